@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace voqcal {
+
+/// The calibration board: a flat rectangle with a chessboard on it.
+///
+/// Board frame: origin at the centre of the rectangle, x along the width, y along the height, z out
+/// of the printed face, towards the sensors. Seen from the front with y up, x points right.
+struct BoardSpec {
+  double width_m = 0.0;    ///< Edge along board x.
+  double height_m = 0.0;   ///< Edge along board y.
+  double square_m = 0.0;   ///< Side of one chessboard square.
+  int num_corners_x = 0;   ///< Inner corners along board x.
+  int num_corners_y = 0;   ///< Inner corners along board y.
+  double pattern_offset_x_m = 0.0;  ///< Centre of the pattern in the board frame.
+  double pattern_offset_y_m = 0.0;
+
+  /// One line for each broken constraint, with its value; empty if the board is usable.
+  std::vector<std::string> Problems() const;
+
+  /// The outline's corners, counter-clockwise seen from the front:
+  /// (-w/2, -h/2), (w/2, -h/2), (w/2, h/2), (-w/2, h/2). Edge i joins corner i to corner i + 1, so
+  /// edges 0 and 2 measure width_m, edges 1 and 3 height_m.
+  std::array<Eigen::Vector3d, 4> OutlineBoardM() const;
+
+  /// The true lengths of edges 0..3.
+  std::array<double, 4> EdgeLengthsM() const { return {width_m, height_m, width_m, height_m}; }
+
+  /// The chessboard's inner corners, x fastest, from (-x, -y) to (+x, +y).
+  std::vector<Eigen::Vector3d> InnerCornersBoardM() const;
+};
+
+}  // namespace voqcal

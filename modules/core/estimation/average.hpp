@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <vector>
+
+#include "core/estimation/set_extrinsic.hpp"
+#include "core/geometry/rigid.hpp"
+
+namespace voqcal {
+
+struct AverageOptions {
+  double max_z_score = 2.0;  ///< Sets beyond this many standard deviations in any parameter go.
+
+  /// One line for each broken constraint, with its value; empty if the options are usable.
+  std::vector<std::string> Problems() const;
+};
+
+/// The mean of the set results, as published: one z-score filter, then mean and spread.
+struct AveragedExtrinsic {
+  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
+  Vector6d spread = Vector6d::Zero();  ///< Standard deviation of [rotation_rad; translation_m] on the left side.
+  std::vector<bool> is_kept;           ///< One for each set; unusable sets are never kept.
+  int num_kept = 0;                    ///< 0: nothing to average, the transform is meaningless.
+
+  bool IsUsable() const { return num_kept > 0; }
+};
+
+AveragedExtrinsic AverageExtrinsics(const std::vector<SetExtrinsic>& sets,
+                                    const AverageOptions& options);
+
+}  // namespace voqcal

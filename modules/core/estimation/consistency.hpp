@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/board/board_sample.hpp"
+
+namespace voqcal {
+
+struct ConsistencyOptions {
+  double max_distance_m = 0.06;   ///< Distances between two poses' centres agree within this...
+  double max_angle_rad = 0.10;    ///< ...and angles between their normals within this.
+
+  /// One line for each broken constraint, with its value; empty if the options are usable.
+  std::vector<std::string> Problems() const;
+};
+
+/// A sample that does not fit the others, and why.
+struct InconsistentSample {
+  int sample = 0;       ///< Index into the samples.
+  std::string reason;   ///< "disagrees with 28 of 29 others: ...", for logs and reports.
+};
+
+/// Which samples hold together. Distances between the centres of two poses and angles between their
+/// normals are the same in both sensors whatever the extrinsic is; a wrong detection breaks them.
+struct Consistency {
+  std::vector<int> consistent;  ///< Ascending indices of a largest subset that agrees pairwise.
+  std::vector<InconsistentSample> inconsistent;
+};
+Consistency FindConsistent(const std::vector<BoardSample>& samples, const ConsistencyOptions& options);
+
+}  // namespace voqcal

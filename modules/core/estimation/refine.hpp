@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/board/board_sample.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/geometry/rigid.hpp"
+
+namespace voqcal {
+
+enum class RefineStatus { kConverged, kNotConverged, kDegenerate };
+std::string ToString(RefineStatus status);
+
+struct RefineOptions {
+  double centre_weight = 1.0;  ///< Weight of the centre's reprojection.
+  double corner_weight = 0.1;  ///< Weight of each outline corner's reprojection; 0 leaves them out.
+  double huber_px = 3.0;       ///< Residuals beyond this count linearly.
+  int max_iterations = 100;
+
+  /// One line for each broken constraint, with its value; empty if the options are usable.
+  std::vector<std::string> Problems() const;
+};
+
+/// The refined extrinsic and what is needed to judge it.
+struct RefinedExtrinsic {
+  /// Takes lidar coordinates to camera coordinates: p_camera = T_camera_lidar * p_lidar.
+  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
+  /// Of [rotation_rad; translation_m], perturbed on the left (camera side).
+  Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();  ///< Of the centres.
+  RefineStatus status = RefineStatus::kNotConverged;
+
+  bool IsUsable() const { return status == RefineStatus::kConverged; }
+  std::string Summary() const;  ///< One line for a log.
+};
+
+/// Refines `T_camera_lidar_start` over every pose: robust reprojection of each pose's lidar centre and
+/// corners against the camera's. Corners are matched up to the board's half-turn by the start.
+RefinedExtrinsic RefineExtrinsic(const std::vector<const BoardSample*>& samples,
+                                 const CameraModel& camera,
+                                 const Eigen::Isometry3d& T_camera_lidar_start,
+                                 const RefineOptions& options);
+
+}  // namespace voqcal

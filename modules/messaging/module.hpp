@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace voqcal {
+
+/// One module of the flow, between the bus and core. Handlers convert and keep; Step computes.
+class Module {
+ public:
+  virtual ~Module() = default;
+
+  /// "lidar_board_detector", ...: its folder, its process and its name in MODULE_STATUS.
+  virtual std::string Name() const = 0;
+
+  /// Does one piece of work on the newest state. Called when no message waits, so that a burst of
+  /// states costs one computation.
+  /// @return true if there is more to do at once; false to wait for messages.
+  virtual bool Step() { return false; }
+
+  /// Publishes the current state again. Called once a second: a lost datagram or a late start heals.
+  virtual void Republish() {}
+
+  /// One line for MODULE_STATUS: "running", "waiting for ...", "failed: ...".
+  virtual std::string State() const { return "running"; }
+
+  /// Results and misses by reason, for MODULE_STATUS and the closing line.
+  const std::map<std::string, std::int64_t>& counters() const { return counters_; }
+
+  /// "812 sweeps, 172 too few points": the totals, for the closing line.
+  std::string Summary() const;
+
+ protected:
+  void Count(const std::string& what) { ++counters_[what]; }
+
+ private:
+  std::map<std::string, std::int64_t> counters_;
+};
+
+}  // namespace voqcal

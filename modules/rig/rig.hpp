@@ -1,0 +1,76 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/assessment/scores.hpp"
+#include "core/board/board_spec.hpp"
+#include "core/board/camera_board.hpp"
+#include "core/board/lidar_board.hpp"
+#include "core/board/sample_picker.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/estimation/average.hpp"
+#include "core/estimation/consistency.hpp"
+#include "core/estimation/refine.hpp"
+#include "core/estimation/set_extrinsic.hpp"
+#include "core/selection/voq.hpp"
+#include "core/simulation/simulation.hpp"
+
+namespace voqcal {
+
+/// The channel of each message, prefix included.
+struct Channels {
+  std::string lidar_points = "LIDAR_POINTS";
+  std::string camera_image = "CAMERA_IMAGE";
+  std::string camera_info = "CAMERA_INFO";
+  std::string lidar_board = "LIDAR_BOARD";
+  std::string camera_board = "CAMERA_BOARD";
+  std::string calib_command = "CALIB_COMMAND";
+  std::string calib_event = "CALIB_EVENT";
+  std::string calib_samples = "CALIB_SAMPLES";
+  std::string voq_sets = "VOQ_SETS";
+  std::string extrinsic_averaged = "EXTRINSIC_AVERAGED";
+  std::string extrinsic_refined = "EXTRINSIC_REFINED";
+  std::string calib_assessment = "CALIB_ASSESSMENT";
+  std::string module_status = "MODULE_STATUS";
+};
+
+enum class DriverSource { kFolder, kSimulator };
+
+/// Where a driver's frames come from.
+struct DriverOptions {
+  DriverSource source = DriverSource::kFolder;
+  std::filesystem::path folder;  ///< For kFolder: files in natural order (pose2 before pose10).
+  double rate_hz = 10.0;         ///< Frames a second.
+  bool is_repeating = false;     ///< For kFolder: starts again after the last file.
+};
+
+/// Everything that a rig file says. Every option of every module has its place here.
+struct Rig {
+  std::string name;
+  std::filesystem::path path;
+  std::string sha256;  ///< Of the file's bytes, lower-case hex.
+  std::string lcm_url;
+  Channels channels;
+  BoardSpec board;
+  CameraModel camera;
+  DriverOptions lidar_driver;
+  DriverOptions camera_driver;
+  SimulationOptions simulation;            ///< Used by drivers whose source is the simulator.
+  LidarBoardOptions lidar_board_detector;
+  CameraBoardOptions camera_board_detector;
+  SamplePickerOptions sample_collector;
+  ConsistencyOptions consistency;          ///< Under voq_selector.
+  VoqOptions voq_selector;
+  SetExtrinsicOptions extrinsic_estimator;
+  AverageOptions average;                  ///< Under extrinsic_estimator.
+  RefineOptions extrinsic_refiner;
+};
+
+/// Reads and checks a rig file (YAML). Options that are not given keep their defaults; board and
+/// camera must be given.
+/// @throws std::runtime_error naming file, line, key, rule and value: missing or unknown keys, wrong
+///     types, Problems() of any part.
+Rig LoadRig(const std::filesystem::path& path);
+
+}  // namespace voqcal

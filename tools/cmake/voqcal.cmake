@@ -1,0 +1,53 @@
+# What every target of voqcal shares. Included once, by the top CMakeLists.txt.
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+option(VOQCAL_WERROR "Treat warnings as errors" OFF)
+set(VOQCAL_SANITIZE "" CACHE STRING "Comma-separated sanitizers, e.g. address,undefined")
+if(VOQCAL_SANITIZE)
+  add_compile_options(-fsanitize=${VOQCAL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  add_link_options(-fsanitize=${VOQCAL_SANITIZE})
+endif()
+
+# The same bytes on every x86-64 machine: no -march=native, no fused multiply-add, no -ffast-math.
+add_compile_options(-ffp-contract=off)
+
+# Warnings and include root ("core/...", "messaging/...") of one target of ours.
+function(voqcal_target_defaults target)
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/modules)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow)
+  if(VOQCAL_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# voqcal_library(NAME SOURCES a.cpp ... LIBS x y): one static library, its headers beside its sources.
+function(voqcal_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
+  add_library(${name} STATIC ${arg_SOURCES})
+  voqcal_target_defaults(${name})
+  target_link_libraries(${name} PUBLIC ${arg_LIBS})
+endfunction()
+
+# voqcal_program(NAME SOURCES main.cpp LIBS x y): one executable in bin/.
+function(voqcal_program name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  voqcal_target_defaults(${name})
+  target_link_libraries(${name} PRIVATE ${arg_LIBS})
+endfunction()
+
+# voqcal_test(NAME SOURCES x_test.cpp LIBS x [LABELS l]): one GoogleTest executable; each TEST is one ctest test.
+function(voqcal_test name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBS;LABELS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+  voqcal_target_defaults(${name})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test)
+  target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gmock GTest::gtest_main)
+  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" DISCOVERY_TIMEOUT 60)
+endfunction()

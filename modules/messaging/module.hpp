@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace voqcal {
@@ -18,6 +20,13 @@ class Module {
   /// states costs one computation.
   /// @return true if there is more to do at once; false to wait for messages.
   virtual bool Step() { return false; }
+
+  /// When Step wants to be called next although no message came (a driver's next frame); nothing if
+  /// only messages give it work. Spin waits no longer than this.
+  virtual std::optional<std::chrono::steady_clock::time_point> NextStep() const { return {}; }
+
+  /// True once there will never be work again (the end of a recording): Spin then returns.
+  virtual bool IsDone() const { return false; }
 
   /// Publishes the current state again. Called once a second: a lost datagram or a late start heals.
   virtual void Republish() {}

@@ -13,45 +13,45 @@ namespace voqcal {
 
 /// When a pair of sightings becomes a sample.
 struct SamplePickerOptions {
-  double max_pair_offset_s = 0.06;    ///< Lidar and camera frames of one pair are at most this far apart.
-  int num_still_frames = 3;           ///< Consecutive pairs over which the board must be still.
-  double max_still_motion_m = 0.02;   ///< Centre movement over these pairs, by the lidar.
-  double max_still_motion_px = 1.0;   ///< Largest corner movement over these pairs, by the camera.
-  double min_new_distance_m = 0.05;   ///< A pose is new if its centre is this far from every sample's...
-  double min_new_angle_rad = 0.05;    ///< ...or its orientation differs by this much.
-  double max_edge_error_m = 0.10;     ///< Largest error of one measured edge length.
+  double max_pair_offset_s =
+      0.06;                  ///< Lidar and camera frames of a pair are at most this far apart.
+  int num_still_frames = 3;  ///< Consecutive pairs over which the board must be still.
+  double max_still_motion_m = 0.02;  ///< Centre movement over these pairs, by the lidar.
+  double max_still_motion_px = 1.0;  ///< Largest corner movement over these pairs, by the camera.
+  double min_new_distance_m =
+      0.05;  ///< A pose is new if its centre is this far from every sample's...
+  double min_new_angle_rad = 0.05;  ///< ...or its orientation differs by this much.
+  double max_edge_error_m = 0.15;   ///< Largest error of one measured edge length.
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;
 };
 
-/// One frame of the lidar board detector: a board, or the reason for none.
-struct LidarSighting {
+/// One frame of a board detector: a board, or the reason for none.
+template <typename Board>
+struct Sighting {
   std::int64_t utime = 0;
-  std::optional<LidarBoard> board;
+  std::optional<Board> board;
   std::string miss;
 };
+using LidarSighting = Sighting<LidarBoard>;
+using CameraSighting = Sighting<CameraBoard>;
 
-/// One frame of the camera board detector.
-struct CameraSighting {
-  std::int64_t utime = 0;
-  std::optional<CameraBoard> board;
-  std::string miss;
-};
-
-/// One decision: a sample, or why a pair gave none.
+/// One decision: a sample, or why a pair of frames gave none.
 struct PickerDecision {
-  std::int64_t utime = 0;  ///< Of the lidar frame, or the camera frame if it has no partner.
-  std::optional<BoardSample> accepted;
-  std::string reason;      ///< Empty if accepted.
+  std::int64_t utime =
+      0;  ///< Of the lidar frame; of the camera frame where there is no lidar frame.
+  std::optional<BoardSample> accepted;  ///< Its id is 0: numbering is the caller's.
+  std::string reason;                   ///< Empty if accepted.
 };
 
 /// Pairs the two detectors' streams by sensor time and picks the samples.
 ///
-/// The answer depends on the sightings' times only, not on the order in which they arrive between the
-/// streams: a sighting is judged once both streams have passed its time (or at Flush).
+/// The answer depends on the sightings' times only, not on the order in which the two streams
+/// arrive: a sighting is judged once both streams have passed its time, or at Flush.
 class SamplePicker {
  public:
+  /// @throws std::invalid_argument if `options` have Problems().
   SamplePicker(const BoardSpec& board, const SamplePickerOptions& options);
 
   /// Sightings of one stream come in order of time; a late one is answered with a rejection.
@@ -61,18 +61,46 @@ class SamplePicker {
   /// No more frames will come: judges what waits.
   std::vector<PickerDecision> Flush();
 
-  /// Takes the next usable pair even if the board moves or the pose is not new.
+  /// Takes the next pair with a board in both, even if it moves or the pose is not new.
   void RequestCapture() { is_capture_requested_ = true; }
 
-  /// The samples that a session already has: new poses must differ from them.
+  /// The samples that the session has: new poses must differ from them.
   void SetKnown(const std::vector<BoardSample>& samples);
 
  private:
+  struct Pair {
+    LidarSighting lidar;
+    CameraSighting camera;
+  };
+
+  std::vector<PickerDecision> Judge(bool is_flushing);
+  /// Index in camera_ of the frame nearest to `utime` within max_pair_offset_s; -1 if there is
+  /// none.
+  int NearestCameraFrame(std::int64_t utime) const;
+  PickerDecision JudgePair(const Pair& pair);
+  PickerDecision JudgeWindow();
+  /// Why the window's boards are not at rest; empty if they are.
+  std::string Motion(const Pair& pair) const;
+  bool IsNew(const BoardSample& sample) const;
+
   BoardSpec board_;
   SamplePickerOptions options_;
+  std::int64_t max_pair_offset_us_;
   bool is_capture_requested_ = false;
-  std::deque<LidarSighting> lidar_;
-  std::deque<CameraSighting> camera_;
+  std::deque<LidarSighting> lidar_;    // not yet judged, in order of time
+  std::deque<CameraSighting> camera_;  // not yet judged, in order of time
+  std::int64_t newest_lidar_utime_;
+  std::int64_t newest_camera_utime_;
+  std::vector<Pair> window_;  // the latest consecutive pairs with a resting board
+  std::vector<Eigen::Isometry3d> known_T_camera_board_;
 };
+
+/// One sample from frames of a resting board: mean poses and corners (turned to the first frame's
+/// half-turn), covariances of the mean under independent noise, the last frame's points.
+/// @throws std::invalid_argument if there is no frame or the counts differ.
+BoardSample AverageSightings(const std::vector<LidarBoard>& lidar,
+                             const std::vector<CameraBoard>& camera,
+                             std::int64_t utime,
+                             const BoardSpec& board);
 
 }  // namespace voqcal

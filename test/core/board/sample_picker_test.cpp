@@ -1,0 +1,192 @@
+#include "core/board/sample_picker.hpp"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace voqcal {
+namespace {
+
+constexpr std::int64_t kFrameUs = 100000;
+
+BoardSpec Board() {
+  BoardSpec board;
+  board.width_m = 0.6;
+  board.height_m = 0.8;
+  board.square_m = 0.1;
+  board.num_corners_x = 3;
+  board.num_corners_y = 4;
+  return board;
+}
+
+Eigen::Isometry3d PoseAt(double x_m) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  T.translation() = Eigen::Vector3d(x_m, 0.2, 3.0);
+  return T;
+}
+
+LidarSighting Lidar(std::int64_t frame, double x_m) {
+  LidarBoard board;
+  board.pose = PoseFromTransform(PoseAt(x_m), Board());
+  board.pose.covariance = Matrix6d::Identity();
+  board.edge_lengths_m = Board().EdgeLengthsM();
+  board.plane_rms_m = 0.01;
+  return {frame * kFrameUs, board, {}};
+}
+
+CameraSighting Camera(std::int64_t frame, double x_m) {
+  CameraBoard board;
+  board.pose = PoseFromTransform(PoseAt(x_m), Board());
+  board.pose.covariance = Matrix6d::Identity();
+  board.corners_px = {{1000 * x_m, 10}, {1000 * x_m + 50, 20}};
+  return {frame * kFrameUs, board, {}};
+}
+
+void Append(const std::vector<PickerDecision>& from, std::vector<PickerDecision>* to) {
+  to->insert(to->end(), from.begin(), from.end());
+}
+
+std::vector<std::string> Outcomes(const std::vector<PickerDecision>& decisions) {
+  std::vector<std::string> outcomes;
+  for (const auto& decision : decisions) {
+    outcomes.push_back(decision.accepted ? "accepted" : decision.reason);
+  }
+  return outcomes;
+}
+
+TEST(SamplePicker, AcceptsAStillBoardOnce) {
+  SamplePicker picker(Board(), {});
+  std::vector<PickerDecision> decisions;
+  for (int frame = 0; frame < 5; ++frame) {
+    Append(picker.Add(Lidar(frame, 0.5)), &decisions);
+    Append(picker.Add(Camera(frame, 0.5)), &decisions);
+  }
+  Append(picker.Flush(), &decisions);
+  EXPECT_THAT(Outcomes(decisions),
+              testing::ElementsAre("not yet still for long enough",
+                                   "not yet still for long enough",
+                                   "accepted",
+                                   "pose is not new",
+                                   "pose is not new"));
+  EXPECT_EQ(decisions[2].accepted->num_frames, 3);
+  EXPECT_EQ(decisions[2].accepted->utime, 0);
+  // Three independent measurements: a third of the covariance of one.
+  EXPECT_NEAR(decisions[2].accepted->lidar.pose.covariance(0, 0), 1.0 / 3, 1e-12);
+}
+
+TEST(SamplePicker, AnswersTheSameWhateverTheArrivalOrderOfTheStreams) {
+  const auto run = [](int camera_lag) {
+    SamplePicker picker(Board(), {});
+    std::vector<PickerDecision> decisions;
+    for (int frame = 0; frame < 40 + camera_lag; ++frame) {
+      const auto x_m = [](int f) { return 0.5 + 0.1 * (f / 5); };
+      if (frame < 40) Append(picker.Add(Lidar(frame, x_m(frame))), &decisions);
+      const int late = frame - camera_lag;
+      if (late >= 0) Append(picker.Add(Camera(late, x_m(late))), &decisions);
+    }
+    Append(picker.Flush(), &decisions);
+    return Outcomes(decisions);
+  };
+  const auto in_step = run(0);
+  EXPECT_EQ(std::count(in_step.begin(), in_step.end(), "accepted"), 8);
+  EXPECT_EQ(run(7), in_step);
+  EXPECT_EQ(run(40), in_step);
+}
+
+TEST(SamplePicker, SaysWhyAPairGivesNoSample) {
+  SamplePickerOptions options;
+  options.num_still_frames = 1;
+  SamplePicker picker(Board(), options);
+  std::vector<PickerDecision> decisions;
+  const auto add = [&](const LidarSighting& lidar, const CameraSighting& camera) {
+    Append(picker.Add(lidar), &decisions);
+    Append(picker.Add(camera), &decisions);
+  };
+  add({0, {}, "no plane"}, Camera(0, 0.5));
+  add(Lidar(1, 0.5), {kFrameUs, {}, "no chessboard"});
+  auto wrong_size = Lidar(2, 0.5);
+  wrong_size.board->edge_lengths_m[1] = 1.0;
+  add(wrong_size, Camera(2, 0.5));
+  Append(picker.Add(Lidar(3, 0.5)), &decisions);  // without a camera frame
+  add(Lidar(4, 0.5), Camera(4, 0.5));
+  Append(picker.Add(Lidar(4, 0.5)), &decisions);
+  Append(picker.Flush(), &decisions);
+  EXPECT_THAT(Outcomes(decisions),
+              testing::ElementsAre("lidar: no plane",
+                                   "camera: no chessboard",
+                                   "board size: the lidar measures an edge of 0.800 m as 1.000 m",
+                                   "no camera frame at that time",
+                                   "lidar frame out of order",
+                                   "accepted"));
+}
+
+TEST(SamplePicker, RejectsAMovingBoardAndTakesItOnRequest) {
+  SamplePicker picker(Board(), {});
+  std::vector<PickerDecision> decisions;
+  for (int frame = 0; frame < 6; ++frame) {
+    if (frame == 4) picker.RequestCapture();
+    Append(picker.Add(Lidar(frame, 0.1 * frame)), &decisions);
+    Append(picker.Add(Camera(frame, 0.1 * frame)), &decisions);
+  }
+  const auto outcomes = Outcomes(decisions);
+  EXPECT_EQ(std::count(outcomes.begin(), outcomes.end(), "board is moving"), 2);
+  EXPECT_EQ(std::count(outcomes.begin(), outcomes.end(), "accepted"), 1);
+}
+
+TEST(SamplePicker, KnowsTheSamplesOfARestartedSession) {
+  SamplePickerOptions options;
+  options.num_still_frames = 1;
+  SamplePicker first(Board(), options);
+  std::vector<PickerDecision> decisions = first.Add(Lidar(0, 0.5));
+  Append(first.Add(Camera(0, 0.5)), &decisions);
+  Append(first.Flush(), &decisions);
+  ASSERT_TRUE(decisions.at(0).accepted);
+
+  SamplePicker second(Board(), options);
+  second.SetKnown({*decisions[0].accepted});
+  decisions = second.Add(Lidar(1, 0.5));
+  Append(second.Add(Camera(1, 0.5)), &decisions);
+  Append(second.Flush(), &decisions);
+  EXPECT_THAT(Outcomes(decisions), testing::ElementsAre("pose is not new"));
+}
+
+TEST(SamplePicker, BoundsWhatWaitsForASilentSensor) {
+  SamplePicker picker(Board(), {});
+  std::size_t num_judged = 0;
+  for (int frame = 0; frame < 1000; ++frame) num_judged += picker.Add(Lidar(frame, 0.5)).size();
+  EXPECT_EQ(num_judged, 400U);  // 600 wait
+}
+
+TEST(SamplePicker, NamesABadOption) {
+  SamplePickerOptions options;
+  options.num_still_frames = 0;
+  EXPECT_THAT(options.Problems(),
+              testing::ElementsAre("num_still_frames must be at least 1, is 0"));
+  EXPECT_THROW(SamplePicker(Board(), options), std::invalid_argument);
+}
+
+TEST(AverageSightings, TurnsFramesOfTheOtherHalfTurnBeforeAveraging) {
+  LidarBoard lidar = *Lidar(0, 0.5).board;
+  lidar.edge_lengths_m = {0.60, 0.80, 0.62, 0.82};
+  LidarBoard lidar_turned = lidar;
+  lidar_turned.pose = TurnedByHalf(lidar.pose);
+  lidar_turned.edge_lengths_m = {0.62, 0.82, 0.60, 0.80};
+  CameraBoard camera = *Camera(0, 0.5).board;
+  CameraBoard camera_turned = camera;
+  camera_turned.pose = TurnedByHalf(camera.pose);
+  std::reverse(camera_turned.corners_px.begin(), camera_turned.corners_px.end());
+  const BoardSample sample =
+      AverageSightings({lidar, lidar_turned}, {camera, camera_turned}, 0, Board());
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(sample.lidar.edge_lengths_m[i], lidar.edge_lengths_m[i], 1e-12);
+    EXPECT_LT((sample.lidar.pose.corners_m[i] - lidar.pose.corners_m[i]).norm(), 1e-12);
+    EXPECT_LT((sample.camera.pose.corners_m[i] - camera.pose.corners_m[i]).norm(), 1e-12);
+  }
+  EXPECT_LT((sample.camera.corners_px[0] - camera.corners_px[0]).norm(), 1e-12);
+  EXPECT_THROW(AverageSightings({}, {}, 0, Board()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace voqcal

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <Eigen/Geometry>
-#include <opencv2/core/mat.hpp>
-
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
 
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
@@ -18,31 +18,35 @@ namespace voqcal {
 struct SimulationOptions {
   std::uint32_t seed = 1;
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();  ///< The truth.
-  int num_poses = 40;       ///< Stops of the board.
-  double hold_s = 1.0;      ///< How long the board is still at each stop.
-  double move_s = 0.5;      ///< How long it moves between stops.
+  int num_poses = 40;                                                ///< Stops of the board.
+  double hold_s = 1.0;  ///< How long the board is still at each stop.
+  double move_s = 0.5;  ///< How long it moves between stops.
   double min_distance_m = 1.5;
   double max_distance_m = 4.5;
   // Lidar (VLP-16 pattern).
-  double range_noise_m = 0.01;      ///< 1 sigma of one return.
-  double ring_bias_m = 0.008;       ///< 1 sigma of the constant offset of each ring.
-  double common_bias_m = 0.0;       ///< Constant offset of every range.
-  double dark_bias_m = 0.0075;      ///< Dark squares read longer by this, bright ones shorter.
+  double range_noise_m = 0.01;   ///< 1 sigma of one return.
+  double ring_bias_m = 0.008;    ///< 1 sigma of the constant offset of each ring.
+  double common_bias_m = 0.0;    ///< Constant offset of every range.
+  double dark_bias_m = 0.0075;   ///< Dark squares read longer by this, bright ones shorter.
+  double intensity_noise = 1.0;  ///< 1 sigma of one return's intensity; a white surface reads 100.
   double beam_divergence_rad = 0.003;  ///< Full width of a beam; mixed pixels come from it.
-  double dropout = 0.01;            ///< Share of beams without a return.
+  double dropout = 0.01;               ///< Share of beams without a return.
   // Camera.
-  double image_noise = 2.0;         ///< 1 sigma, grey levels of 255.
-  double image_blur_px = 0.5;       ///< 1 sigma of the lens' blur.
+  double image_noise = 2.0;    ///< 1 sigma, grey levels of 255.
+  double image_blur_px = 0.5;  ///< 1 sigma of the lens' blur.
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;
 };
 
-/// The simulated world: a room with walls, pillars and a board on a stand. A pure function of options
-/// and time, so that two processes that simulate the same rig agree.
+/// The simulated world: a room with walls, pillars and a board on a stand. A pure function of
+/// options and time, so that two processes that simulate the same rig agree.
 class Simulation {
  public:
-  /// @throws std::invalid_argument if `options`, `board` or `camera` have Problems().
+  /// Paints the room and finds the stops; takes seconds for a large image.
+  /// @throws std::invalid_argument if `options`, `board` or `camera` have Problems(), or if the
+  /// board
+  ///     fits nowhere into the view of both sensors.
   Simulation(const SimulationOptions& options, const BoardSpec& board, const CameraModel& camera);
   ~Simulation();
 
@@ -55,7 +59,8 @@ class Simulation {
   /// True while the board rests at a stop.
   bool IsStill(double time_s) const;
 
-  /// One sweep that begins at `time_s`, without motion within the sweep. Rings count from the lowest.
+  /// One sweep that begins at `time_s`, without motion within the sweep. Rings count from the
+  /// lowest. Beams without a return are left out.
   PointCloud Sweep(double time_s) const;
 
   /// The image of an instant: 8-bit BGR, with lens distortion, blur and noise.

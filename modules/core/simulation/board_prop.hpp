@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/board/board_spec.hpp"
+
+namespace voqcal {
+
+/// The board's printed face, cut by the grid lines of its chessboard into rectangular cells, each
+/// of one shade. Cells outside the chessboard are its white margin; beyond the outline there is
+/// nothing.
+class BoardFace {
+ public:
+  explicit BoardFace(const BoardSpec& board);
+
+  /// Number of the cell at a point of the board plane. Cells are convex: what lies between points
+  /// of the same cell is in that cell.
+  int CellAt(double x_board_m, double y_board_m) const;
+
+  bool IsOutside(int cell) const;  ///< Beyond the outline.
+  bool IsDark(int cell) const;
+
+  static constexpr float kDarkAlbedo = 0.08F;
+  static constexpr float kBrightAlbedo = 0.80F;
+
+ private:
+  int num_x_;  ///< Squares along board x.
+  int num_y_;
+  double square_m_;
+  double left_m_;  ///< Where the chessboard begins.
+  double bottom_m_;
+  double half_width_m_;
+  double half_height_m_;
+};
+
+/// A straight round bar of the stand, without end caps.
+struct Tube {
+  Eigen::Vector3d begin_m;
+  Eigen::Vector3d end_m;
+  double radius_m = 0.0;
+
+  /// Distance along a ray (unit direction) to the tube's outside.
+  std::optional<double> Cast(const Eigen::Vector3d& origin_m,
+                             const Eigen::Vector3d& direction) const;
+};
+
+constexpr float kTubeAlbedo = 0.12F;  ///< Dull black metal.
+
+/// The stand: a boom from the board's back, a pole that carries it and three feet on the floor.
+/// It stays behind the board's plane, so it hides nothing of the face.
+std::array<Tube, 5> StandTubes(const Eigen::Isometry3d& T_lidar_board,
+                               const BoardSpec& board,
+                               double floor_z_m);
+
+/// Points along the outline, `num_per_edge` to an edge, corners included.
+std::vector<Eigen::Vector3d> OutlinePointsBoardM(const BoardSpec& board, int num_per_edge);
+
+}  // namespace voqcal

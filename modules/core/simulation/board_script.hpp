@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/board/board_spec.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/simulation/room.hpp"
+#include "core/simulation/simulation.hpp"
+
+namespace voqcal {
+
+/// One place of the board, by the six numbers that the script interpolates:
+/// [azimuth, elevation (rad), distance (m) of its centre from the lidar; yaw, pitch, roll (rad)
+/// from facing the lidar upright].
+using Placement = Eigen::Matrix<double, 6, 1>;
+
+/// Where the board is at which time: a list of stops, and smooth moves between them.
+///
+/// Stops are spread over the camera's width and over the distances. At each of them the whole board
+/// is in the image, between the lidar's lowest and highest beam, hidden by nothing and clear of
+/// walls and furniture.
+class BoardScript {
+ public:
+  /// @throws std::invalid_argument if no place in the room satisfies all this.
+  BoardScript(const SimulationOptions& options,
+              const BoardSpec& board,
+              const CameraModel& camera,
+              const Room& room);
+
+  double DurationS() const;
+  Eigen::Isometry3d T_lidar_board(double time_s) const;  // NOLINT: named for its frames
+  bool IsStill(double time_s) const;
+
+ private:
+  struct Phase {
+    int stop = 0;           ///< The latest stop that was reached.
+    double moving_s = 0.0;  ///< Since the board left it; 0 while it rests there.
+  };
+  Phase PhaseAt(double time_s) const;
+
+  double hold_s_;
+  double move_s_;
+  std::vector<Placement> stops_;
+};
+
+}  // namespace voqcal

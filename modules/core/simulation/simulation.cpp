@@ -1,0 +1,113 @@
+#include "core/simulation/simulation.hpp"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/simulation/board_script.hpp"
+#include "core/simulation/camera_simulator.hpp"
+#include "core/simulation/lidar_simulator.hpp"
+#include "core/simulation/room.hpp"
+
+namespace voqcal {
+namespace {
+
+void RequireNone(const char* what, const std::vector<std::string>& problems) {
+  if (problems.empty()) return;
+  std::string text = what;
+  for (const std::string& problem : problems)
+    text += (&problem == &problems[0] ? ": " : "; ") + problem;
+  throw std::invalid_argument(text);
+}
+
+const SimulationOptions& Checked(const SimulationOptions& options,
+                                 const BoardSpec& board,
+                                 const CameraModel& camera) {
+  RequireNone("simulation", options.Problems());
+  RequireNone("board", board.Problems());
+  RequireNone("camera", camera.Problems());
+  return options;
+}
+
+std::int64_t Microseconds(double time_s) { return std::llround(time_s * 1e6); }
+
+}  // namespace
+
+std::vector<std::string> SimulationOptions::Problems() const {
+  std::vector<std::string> problems;
+  const auto require = [&problems](bool is_met, const char* rule, auto value) {
+    if (is_met) return;
+    std::ostringstream text;
+    text << rule << ", is " << value;
+    problems.push_back(text.str());
+  };
+  const auto require_sigma = [&require](const char* rule, double value) {
+    require(value >= 0 && std::isfinite(value), rule, value);
+  };
+  const Eigen::Matrix3d R = T_camera_lidar.linear();
+  const double skew = (R.transpose() * R - Eigen::Matrix3d::Identity()).norm();
+  require(skew < 1e-6 && R.determinant() > 0,
+          "T_camera_lidar must be a rotation and a translation: |R'R - I|",
+          skew);
+  require(T_camera_lidar.translation().norm() < 1.0,
+          "T_camera_lidar must keep the camera within 1 m of the lidar: |t|",
+          T_camera_lidar.translation().norm());
+  require(num_poses >= 1, "num_poses must be at least 1", num_poses);
+  require(hold_s > 0 && std::isfinite(hold_s), "hold_s must be positive", hold_s);
+  require(move_s > 0 && std::isfinite(move_s), "move_s must be positive", move_s);
+  require(min_distance_m > 0, "min_distance_m must be positive", min_distance_m);
+  require(max_distance_m >= min_distance_m && std::isfinite(max_distance_m),
+          "max_distance_m must be at least min_distance_m",
+          max_distance_m);
+  require_sigma("range_noise_m must not be negative", range_noise_m);
+  require_sigma("ring_bias_m must not be negative", ring_bias_m);
+  require(std::isfinite(common_bias_m), "common_bias_m must be finite", common_bias_m);
+  require(std::isfinite(dark_bias_m), "dark_bias_m must be finite", dark_bias_m);
+  require_sigma("intensity_noise must not be negative", intensity_noise);
+  require(beam_divergence_rad >= 0 && beam_divergence_rad <= 0.05,
+          "beam_divergence_rad must be within 0 and 0.05",
+          beam_divergence_rad);
+  require(dropout >= 0 && dropout < 1, "dropout must be within 0 and 1", dropout);
+  require_sigma("image_noise must not be negative", image_noise);
+  require(image_blur_px >= 0 && image_blur_px <= 10,
+          "image_blur_px must be within 0 and 10",
+          image_blur_px);
+  return problems;
+}
+
+struct Simulation::Impl {
+  Impl(const SimulationOptions& options, const BoardSpec& board, const CameraModel& camera)
+      : script(Checked(options, board, camera), board, camera, room),
+        lidar(options, board, room),
+        camera_view(options, board, camera, room) {}
+
+  Room room;
+  BoardScript script;
+  LidarSimulator lidar;
+  CameraSimulator camera_view;
+};
+
+Simulation::Simulation(const SimulationOptions& options,
+                       const BoardSpec& board,
+                       const CameraModel& camera)
+    : impl_(std::make_unique<Impl>(options, board, camera)) {}
+
+Simulation::~Simulation() = default;
+
+double Simulation::DurationS() const { return impl_->script.DurationS(); }
+
+Eigen::Isometry3d Simulation::T_lidar_board(double time_s) const {
+  return impl_->script.T_lidar_board(time_s);
+}
+
+bool Simulation::IsStill(double time_s) const { return impl_->script.IsStill(time_s); }
+
+PointCloud Simulation::Sweep(double time_s) const {
+  return impl_->lidar.Sweep(T_lidar_board(time_s), Microseconds(time_s));
+}
+
+cv::Mat Simulation::Image(double time_s) const {
+  return impl_->camera_view.Render(T_lidar_board(time_s), Microseconds(time_s));
+}
+
+}  // namespace voqcal

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/assessment/scores.hpp"
 #include "core/board/board_spec.hpp"
@@ -17,6 +19,9 @@
 #include "core/simulation/simulation.hpp"
 
 namespace voqcal {
+
+/// The same as Bus' own default (a test holds them together): this module does not know LCM.
+inline constexpr char kDefaultRigLcmUrl[] = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
 
 /// The channel of each message, prefix included.
 struct Channels {
@@ -35,14 +40,25 @@ struct Channels {
   std::string module_status = "MODULE_STATUS";
 };
 
+/// Frames without a clock of their own (folders, simulation) count from here: 2020-01-01T00:00:00Z,
+/// microseconds since the Unix epoch. Never the wall clock: the same frames get the same times.
+inline constexpr std::int64_t kSyntheticEpochUtime = 1577836800000000;
+
 enum class DriverSource { kFolder, kSimulator };
 
 /// Where a driver's frames come from.
 struct DriverOptions {
   DriverSource source = DriverSource::kFolder;
   std::filesystem::path folder;  ///< For kFolder: files in natural order (pose2 before pose10).
+  std::string file_ending;       ///< For kFolder: only names that end so ("_full.pcd"); empty: all.
   double rate_hz = 10.0;         ///< Frames a second.
   bool is_repeating = false;     ///< For kFolder: starts again after the last file.
+  int jpeg_quality = 95;         ///< Of simulated images: 1 to 100.
+
+  /// One line for each broken constraint, with its value; empty if the options are usable. Whether
+  /// the folder exists is for the driver to say: a rig file also serves where there is no such
+  /// folder.
+  std::vector<std::string> Problems() const;
 };
 
 /// Everything that a rig file says. Every option of every module has its place here.
@@ -50,26 +66,27 @@ struct Rig {
   std::string name;
   std::filesystem::path path;
   std::string sha256;  ///< Of the file's bytes, lower-case hex.
-  std::string lcm_url;
+  std::string lcm_url = kDefaultRigLcmUrl;
   Channels channels;
   BoardSpec board;
   CameraModel camera;
   DriverOptions lidar_driver;
   DriverOptions camera_driver;
-  SimulationOptions simulation;            ///< Used by drivers whose source is the simulator.
+  SimulationOptions simulation;  ///< Used by drivers whose source is the simulator.
   LidarBoardOptions lidar_board_detector;
   CameraBoardOptions camera_board_detector;
   SamplePickerOptions sample_collector;
-  ConsistencyOptions consistency;          ///< Under voq_selector.
+  ConsistencyOptions consistency;  ///< Under voq_selector.
   VoqOptions voq_selector;
   SetExtrinsicOptions extrinsic_estimator;
-  AverageOptions average;                  ///< Under extrinsic_estimator.
+  AverageOptions average;  ///< Under extrinsic_estimator.
   RefineOptions extrinsic_refiner;
 };
 
 /// Reads and checks a rig file (YAML). Options that are not given keep their defaults; board and
 /// camera must be given.
-/// @throws std::runtime_error naming file, line, key, rule and value: missing or unknown keys, wrong
+/// @throws std::runtime_error naming file, line, key, rule and value: missing or unknown keys,
+/// wrong
 ///     types, Problems() of any part.
 Rig LoadRig(const std::filesystem::path& path);
 

@@ -1,0 +1,175 @@
+#include "rig/result_file.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include "rig/atomic_file.hpp"
+#include "rig/number_text.hpp"
+#include "rig/rig_sections.hpp"
+#include "rig/yaml_reader.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr char kMadeFromNote[] =
+    "# log_sha256: of the session's samples.lcm, the log of the accepted samples (or of the table "
+    "of\n"
+    "# poses). A result depends on samples and rig only, so a live session and a run on its "
+    "recording\n"
+    "# give the same bytes.\n";
+
+template <typename Vector>
+std::string List(const Vector& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + NumberText(value);
+  return "[" + text + "]";
+}
+
+template <typename Matrix>
+std::string Rows(const Matrix& matrix, const std::string& indent) {
+  std::string text;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    std::vector<double> row;
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
+    text += indent + "- " + List(row) + "\n";
+  }
+  return text;
+}
+
+/// x y z w, of the two quaternions of a rotation the one with w >= 0.
+Eigen::Vector4d QuaternionXyzw(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q = Eigen::Quaterniond(T.linear()).normalized();
+  return q.w() < 0 ? -q.coeffs() : q.coeffs();
+}
+
+std::string Transform(const Eigen::Isometry3d& T, const std::string& indent) {
+  const Eigen::Vector3d translation_m = T.translation();
+  return indent + "matrix:\n" + Rows(T.matrix(), indent + "  ") +         //
+         indent + "quaternion_xyzw: " + List(QuaternionXyzw(T)) + "\n" +  //
+         indent + "translation_m: " + List(translation_m) + "\n";
+}
+
+std::string SpreadLine(const std::string& name, const Spread& spread) {
+  return "    " + name + ": {mean: " + NumberText(spread.mean) +
+         ", std: " + NumberText(spread.std) + ", max: " + NumberText(spread.max) + "}\n";
+}
+
+std::string Score(const std::string& name, const std::string& note, const SceneScore& score) {
+  return "  " + name + ":  # " + note + "\n" + SpreadLine("centre_px", score.centre_px) +
+         SpreadLine("centre_mm", score.centre_mm) + SpreadLine("corner_mm", score.corner_mm) +
+         SpreadLine("normal_deg", score.normal_deg);
+}
+
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    const bool is_control = static_cast<unsigned char>(c) < 0x20;
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += is_control ? ' ' : c;
+  }
+  return quoted + '"';
+}
+
+std::string Averaged(const AveragedPart& averaged) {
+  return "averaged:  # the VOQ average that the refinement started from\n"
+         "  T_camera_lidar:\n" +
+         Transform(averaged.T_camera_lidar, "    ") +
+         "  # standard deviation of the kept sets: rotation_rad, then translation_m, left (camera) "
+         "side\n"
+         "  spread: " +
+         List(averaged.spread) + "\n  num_sets: " + std::to_string(averaged.num_sets) +
+         "\n  num_sets_kept: " + std::to_string(averaged.num_kept) + "\n";
+}
+
+std::string Samples(const CalibrationResult& result) {
+  std::string used;
+  for (const std::int64_t id : result.used_ids) {
+    used += (used.empty() ? "" : ", ") + std::to_string(id);
+  }
+  std::string rejected = result.rejected.empty() ? " []\n" : "\n";
+  for (const RejectedSample& sample : result.rejected) {
+    rejected +=
+        "    - {id: " + std::to_string(sample.id) + ", reason: " + Quoted(sample.reason) + "}\n";
+  }
+  return "samples:\n  used: [" + used + "]\n  rejected:" + rejected;
+}
+
+/// The matrix form as a transform; an error of the section if it is not rigid.
+void ReadMatrix(YamlSection* section, Eigen::Isometry3d* T) {
+  constexpr double kMaxError = 1e-3;  // Files written by hand hold three or four digits.
+  std::vector<std::vector<double>> rows;
+  section->Read("matrix", &rows);
+  Eigen::Matrix4d matrix;
+  bool has_shape = rows.size() == 4;
+  for (std::size_t i = 0; has_shape && i < 4; ++i) {
+    has_shape = rows[i].size() == 4;
+    if (has_shape) matrix.row(static_cast<int>(i)) = Eigen::Map<Eigen::RowVector4d>(rows[i].data());
+  }
+  if (!has_shape) return section->AddError("matrix", "must be 4 rows of 4 numbers");
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  const double rotation_error =
+      (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (rotation_error > kMaxError || R.determinant() < 0) {
+    return section->AddError("matrix",
+                             "must be a rigid transform: R'R is off the identity by " +
+                                 NumberText(rotation_error) + ", det R is " +
+                                 NumberText(R.determinant()));
+  }
+  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    return section->AddError("matrix", "must end with the row 0 0 0 1");
+  }
+  *T = Eigen::Isometry3d::Identity();
+  T->linear() = NearestRotation(R);
+  T->translation() = matrix.topRightCorner<3, 1>();
+}
+
+}  // namespace
+
+std::string ToYaml(const CalibrationResult& result) {
+  const std::string covariance = Rows(result.covariance, "  ");
+  const MadeFrom& made_from = result.made_from;
+  return "# Extrinsic calibration of a camera and a lidar, by voqcal.\n"
+         "T_camera_lidar:  # p_camera = T_camera_lidar * p_lidar, metres\n" +
+         Transform(result.T_camera_lidar, "  ") +
+         "T_lidar_camera:  # p_lidar = T_lidar_camera * p_camera, metres: the inverse\n" +
+         Transform(result.T_camera_lidar.inverse(), "  ") +
+         "# of T_camera_lidar: rotation_rad, then translation_m, perturbed on the left (camera) "
+         "side\n"
+         "covariance:\n" +
+         covariance + Averaged(result.averaged) +
+         "lidar_bias: {status: " + Quoted(result.lidar_bias.status) + "}\n" +
+         "# reprojection error of the board's centre in pixels, and times the metres per pixel at "
+         "the\n"
+         "# board; mean distance of the board's corners; angle between the normals\n"
+         "scores:\n" +
+         Score("held_out", "each sample by the extrinsic refined without it", result.held_out) +
+         Score("in_sample", "by the extrinsic made from these very samples", result.in_sample) +
+         Score("average", "the VOQ average, all samples", result.of_average) + Samples(result) +
+         kMadeFromNote + "made_from:\n  log_sha256: " + Quoted(made_from.log_sha256) +
+         "\n  rig_sha256: " + Quoted(made_from.rig_sha256) +
+         "\n  version: " + Quoted(made_from.version) + "\n";
+}
+
+Eigen::Isometry3d ReadExtrinsic(const std::filesystem::path& path) {
+  constexpr double kMaxDisagreement = 1e-3;  // rad and m: what rounding explains.
+  YamlDocument document(path.string(), ReadWholeFile(path));
+  YamlSection top(&document);
+  YamlSection section = top.RequiredSection("T_camera_lidar");
+  document.ThrowIfWrong();
+  const bool has_quaternion = section.Has("quaternion_xyzw") && section.Has("translation_m");
+  if (!section.Has("matrix") && !has_quaternion) {
+    top.AddError("T_camera_lidar", "must have matrix, or quaternion_xyzw and translation_m");
+  }
+  Eigen::Isometry3d from_quaternion = Eigen::Isometry3d::Identity();
+  if (has_quaternion) ReadTransform(&section, &from_quaternion);
+  Eigen::Isometry3d T_camera_lidar = from_quaternion;
+  if (section.Has("matrix")) ReadMatrix(&section, &T_camera_lidar);
+  document.ThrowIfWrong();
+  if (has_quaternion && DifferenceLeft(T_camera_lidar, from_quaternion).norm() > kMaxDisagreement) {
+    section.AddError("matrix", "must say the same as quaternion_xyzw and translation_m");
+  }
+  document.ThrowIfWrong();
+  return T_camera_lidar;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/assessment/scores.hpp"
+#include "core/geometry/rigid.hpp"
+
+namespace voqcal {
+
+/// A sample that the result was not made from, and why.
+struct RejectedSample {
+  std::int64_t id = 0;
+  std::string reason;
+};
+
+/// What was estimated of the lidar's systematic range errors. The refinement estimates none yet,
+/// and the file says so rather than leave a zero to be believed.
+struct LidarBias {
+  std::string status = "not estimated";
+};
+
+/// The VOQ average that the refinement started from.
+struct AveragedPart {
+  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
+  Vector6d spread =
+      Vector6d::Zero();  ///< Of the kept sets: [rotation_rad; translation_m], left side.
+  int num_sets = 0;
+  int num_kept = 0;  ///< Within the z-score.
+};
+
+/// Which bytes the result is made from. No wall-clock time: the file is the same each run.
+struct MadeFrom {
+  std::string log_sha256;  ///< Of the session's samples.lcm, or of the table of poses.
+  std::string rig_sha256;
+  std::string version;  ///< Of voqcal.
+};
+
+/// Everything that extrinsic.yaml says.
+struct CalibrationResult {
+  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
+  /// Of [rotation_rad; translation_m], perturbed on the left (camera side).
+  Matrix6d covariance = Matrix6d::Zero();
+  AveragedPart averaged;
+  LidarBias lidar_bias;
+  SceneScore held_out;    ///< Each sample by the extrinsic refined without it.
+  SceneScore in_sample;   ///< Flatters: the same samples made the extrinsic.
+  SceneScore of_average;  ///< The VOQ average on all samples.
+  std::vector<std::int64_t> used_ids;
+  std::vector<RejectedSample> rejected;
+  MadeFrom made_from;
+};
+
+/// The text of extrinsic.yaml. The same result gives the same bytes; numbers read back exactly.
+std::string ToYaml(const CalibrationResult& result);
+
+/// T_camera_lidar of such a file, or of any YAML file with
+///     T_camera_lidar: {matrix: 4 rows of 4} or {quaternion_xyzw, translation_m}
+/// Other keys are not looked at. Rotations that were rounded (by up to 1e-3) are made exact.
+///
+/// @throws std::runtime_error naming file, line, key, rule and value: no such key, not a rigid
+///     transform, or a matrix and a quaternion that contradict each other.
+Eigen::Isometry3d ReadExtrinsic(const std::filesystem::path& path);
+
+}  // namespace voqcal

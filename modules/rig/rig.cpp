@@ -1,0 +1,29 @@
+#include "rig/rig.hpp"
+
+#include "rig/atomic_file.hpp"
+#include "rig/rig_sections.hpp"
+#include "rig/sha256.hpp"
+
+namespace voqcal {
+
+std::vector<std::string> DriverOptions::Problems() const {
+  std::vector<std::string> problems;
+  if (!(rate_hz > 0)) problems.push_back("rate_hz must be positive, is " + std::to_string(rate_hz));
+  if (jpeg_quality < 1 || jpeg_quality > 100) {
+    problems.push_back("jpeg_quality must be 1 to 100, is " + std::to_string(jpeg_quality));
+  }
+  return problems;
+}
+
+Rig LoadRig(const std::filesystem::path& path) {
+  const std::string text = ReadWholeFile(path);
+  YamlDocument document(path.string(), text);
+  Rig rig;
+  rig.path = path;
+  rig.sha256 = Sha256OfBytes(text);
+  ReadRigSections(&document, &rig);
+  document.ThrowIfWrong();
+  return rig;
+}
+
+}  // namespace voqcal

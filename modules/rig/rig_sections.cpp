@@ -1,0 +1,246 @@
+#include "rig/rig_sections.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace voqcal {
+namespace {
+
+/// Reads nothing more of a section: what is left over or does not fit together becomes an error.
+template <typename Options>
+void Finish(const Options& options, YamlSection* section) {
+  section->AddProblems(options.Problems());
+  section->RefuseUnknownKeys();
+}
+
+void ReadLcm(YamlSection* top, Rig* rig, std::string* channel_prefix) {
+  YamlSection section = top->Section("lcm");
+  section.Read("url", &rig->lcm_url);
+  section.Read("channel_prefix", channel_prefix);
+  section.RefuseUnknownKeys();
+}
+
+void ReadChannels(YamlSection* top, const std::string& prefix, Channels* channels) {
+  constexpr std::size_t kMaxLength = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH of LCM 1.3
+  YamlSection section = top->Section("channels");
+  std::set<std::string> taken;
+  const auto read = [&](const char* key, std::string* channel) {
+    section.Read(key, channel);
+    if (channel->empty()) section.AddError(key, "must not be empty");
+    *channel = prefix + *channel;
+    if (channel->size() > kMaxLength) {
+      section.AddError(key, "must have at most 63 letters, prefix included");
+    }
+    if (!taken.insert(*channel).second) section.AddError(key, "must differ from other channels");
+  };
+  read("lidar_points", &channels->lidar_points);
+  read("camera_image", &channels->camera_image);
+  read("camera_info", &channels->camera_info);
+  read("lidar_board", &channels->lidar_board);
+  read("camera_board", &channels->camera_board);
+  read("calib_command", &channels->calib_command);
+  read("calib_event", &channels->calib_event);
+  read("calib_samples", &channels->calib_samples);
+  read("voq_sets", &channels->voq_sets);
+  read("extrinsic_averaged", &channels->extrinsic_averaged);
+  read("extrinsic_refined", &channels->extrinsic_refined);
+  read("calib_assessment", &channels->calib_assessment);
+  read("module_status", &channels->module_status);
+  section.RefuseUnknownKeys();
+}
+
+void ReadBoard(YamlSection* top, BoardSpec* board) {
+  YamlSection section = top->RequiredSection("board");
+  if (!top->Has("board")) return;
+  section.ReadRequired("width_m", &board->width_m);
+  section.ReadRequired("height_m", &board->height_m);
+  section.ReadRequired("square_m", &board->square_m);
+  section.ReadRequired("num_corners_x", &board->num_corners_x);
+  section.ReadRequired("num_corners_y", &board->num_corners_y);
+  section.Read("pattern_offset_x_m", &board->pattern_offset_x_m);
+  section.Read("pattern_offset_y_m", &board->pattern_offset_y_m);
+  if (section.IsComplete()) section.AddProblems(board->Problems());
+  section.RefuseUnknownKeys();
+}
+
+void ReadLens(YamlSection* section, CameraModel* camera) {
+  std::string lens_model;
+  std::vector<double> distortion;
+  section->ReadRequired("lens_model", &lens_model);
+  section->ReadRequired("distortion", &distortion);
+  if (!section->IsComplete()) return;
+  const auto lens = LensModelFromString(lens_model);
+  if (!lens) return section->AddError("lens_model", "must be equidistant, plumb_bob or rational");
+  camera->lens = *lens;
+  if (distortion.size() != static_cast<std::size_t>(NumDistortion(*lens))) {
+    return section->AddError("distortion",
+                             "must be a list of " + std::to_string(NumDistortion(*lens)) +
+                                 " coefficients for lens_model " + lens_model);
+  }
+  std::copy(distortion.begin(), distortion.end(), camera->distortion.begin());
+}
+
+void ReadCamera(YamlSection* top, CameraModel* camera) {
+  YamlSection section = top->RequiredSection("camera");
+  if (!top->Has("camera")) return;
+  ReadLens(&section, camera);
+  section.ReadRequired("width_px", &camera->width_px);
+  section.ReadRequired("height_px", &camera->height_px);
+  section.ReadRequired("fx_px", &camera->fx_px);
+  section.ReadRequired("fy_px", &camera->fy_px);
+  section.ReadRequired("cx_px", &camera->cx_px);
+  section.ReadRequired("cy_px", &camera->cy_px);
+  if (section.IsComplete()) section.AddProblems(camera->Problems());
+  section.RefuseUnknownKeys();
+}
+
+void ReadDriver(YamlSection* top,
+                const char* key,
+                const std::filesystem::path& rig_path,
+                DriverOptions* options) {
+  YamlSection section = top->Section(key);
+  std::string source = "folder";
+  std::string folder;
+  section.Read("source", &source);
+  section.Read("folder", &folder);
+  section.Read("file_ending", &options->file_ending);
+  section.Read("rate_hz", &options->rate_hz);
+  section.Read("is_repeating", &options->is_repeating);
+  section.Read("jpeg_quality", &options->jpeg_quality);
+  if (source != "folder" && source != "simulator") {
+    section.AddError("source", "must be folder or simulator");
+  }
+  options->source = source == "simulator" ? DriverSource::kSimulator : DriverSource::kFolder;
+  if (!folder.empty()) options->folder = (rig_path.parent_path() / folder).lexically_normal();
+  Finish(*options, &section);
+}
+
+void ReadSimulation(YamlSection* top, SimulationOptions* options) {
+  YamlSection section = top->Section("simulation");
+  section.Read("seed", &options->seed);
+  YamlSection truth = section.Section("T_camera_lidar");
+  ReadTransform(&truth, &options->T_camera_lidar);
+  truth.RefuseUnknownKeys();
+  section.Read("num_poses", &options->num_poses);
+  section.Read("hold_s", &options->hold_s);
+  section.Read("move_s", &options->move_s);
+  section.Read("min_distance_m", &options->min_distance_m);
+  section.Read("max_distance_m", &options->max_distance_m);
+  section.Read("range_noise_m", &options->range_noise_m);
+  section.Read("ring_bias_m", &options->ring_bias_m);
+  section.Read("common_bias_m", &options->common_bias_m);
+  section.Read("dark_bias_m", &options->dark_bias_m);
+  section.Read("intensity_noise", &options->intensity_noise);
+  section.ReadDegrees("beam_divergence_deg", &options->beam_divergence_rad);
+  section.Read("dropout", &options->dropout);
+  section.Read("image_noise", &options->image_noise);
+  section.Read("image_blur_px", &options->image_blur_px);
+  Finish(*options, &section);
+}
+
+void ReadLidarBoardDetector(YamlSection* top, LidarBoardOptions* options) {
+  YamlSection section = top->Section("lidar_board_detector");
+  section.Read("min_range_m", &options->min_range_m);
+  section.Read("max_range_m", &options->max_range_m);
+  YamlSection box = section.Section("region_of_interest");
+  if (section.Has("region_of_interest")) {
+    RegionOfInterest region;
+    box.ReadRequired("min_lidar_m", &region.min_lidar_m);
+    box.ReadRequired("max_lidar_m", &region.max_lidar_m);
+    options->region_of_interest = region;
+  }
+  box.RefuseUnknownKeys();
+  Finish(*options, &section);
+}
+
+void ReadCameraBoardDetector(YamlSection* top, CameraBoardOptions* options) {
+  YamlSection section = top->Section("camera_board_detector");
+  section.Read("max_reprojection_rms_px", &options->max_reprojection_rms_px);
+  Finish(*options, &section);
+}
+
+void ReadSampleCollector(YamlSection* top, SamplePickerOptions* options) {
+  YamlSection section = top->Section("sample_collector");
+  section.Read("max_pair_offset_s", &options->max_pair_offset_s);
+  section.Read("num_still_frames", &options->num_still_frames);
+  section.Read("max_still_motion_m", &options->max_still_motion_m);
+  section.Read("max_still_motion_px", &options->max_still_motion_px);
+  section.Read("min_new_distance_m", &options->min_new_distance_m);
+  section.ReadDegrees("min_new_angle_deg", &options->min_new_angle_rad);
+  section.Read("max_edge_error_m", &options->max_edge_error_m);
+  Finish(*options, &section);
+}
+
+void ReadVoqSelector(YamlSection* top, VoqOptions* options, ConsistencyOptions* consistency) {
+  YamlSection section = top->Section("voq_selector");
+  section.Read("num_sets", &options->num_sets);
+  YamlSection pairs = section.Section("consistency");
+  pairs.Read("max_distance_m", &consistency->max_distance_m);
+  pairs.ReadDegrees("max_angle_deg", &consistency->max_angle_rad);
+  Finish(*consistency, &pairs);
+  Finish(*options, &section);
+}
+
+void ReadExtrinsicEstimator(YamlSection* top,
+                            SetExtrinsicOptions* options,
+                            AverageOptions* average) {
+  YamlSection section = top->Section("extrinsic_estimator");
+  section.ReadDegrees("sigma_normal_deg", &options->sigma_normal_rad);
+  section.Read("sigma_centre_m", &options->sigma_centre_m);
+  section.Read("sigma_centre_px", &options->sigma_centre_px);
+  section.Read("max_iterations", &options->max_iterations);
+  section.Read("max_z_score", &average->max_z_score);
+  section.AddProblems(average->Problems());
+  Finish(*options, &section);
+}
+
+void ReadExtrinsicRefiner(YamlSection* top, RefineOptions* options) {
+  YamlSection section = top->Section("extrinsic_refiner");
+  section.Read("centre_weight", &options->centre_weight);
+  section.Read("corner_weight", &options->corner_weight);
+  section.Read("depth_weight", &options->depth_weight);
+  section.Read("normal_weight", &options->normal_weight);
+  section.Read("huber_px", &options->huber_px);
+  section.Read("max_iterations", &options->max_iterations);
+  Finish(*options, &section);
+}
+
+}  // namespace
+
+void ReadTransform(YamlSection* section, Eigen::Isometry3d* T) {
+  constexpr double kMaxLengthError = 1e-3;  // People round quaternions to three or four digits.
+  std::vector<double> xyzw = {0, 0, 0, 1};
+  Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
+  section->Read("quaternion_xyzw", &xyzw);
+  section->Read("translation_m", &translation_m);
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  if (xyzw.size() == 4) q.coeffs() = Eigen::Map<const Eigen::Vector4d>(xyzw.data());
+  if (xyzw.size() != 4 || std::abs(q.norm() - 1) > kMaxLengthError) {
+    return section->AddError("quaternion_xyzw", "must be 4 numbers of length 1");
+  }
+  *T = Eigen::Translation3d(translation_m) * q.normalized();
+}
+
+void ReadRigSections(YamlDocument* document, Rig* rig) {
+  YamlSection top(document);
+  std::string channel_prefix;
+  top.ReadRequired("rig", &rig->name);
+  ReadLcm(&top, rig, &channel_prefix);
+  ReadChannels(&top, channel_prefix, &rig->channels);
+  ReadBoard(&top, &rig->board);
+  ReadCamera(&top, &rig->camera);
+  ReadDriver(&top, "lidar_driver", rig->path, &rig->lidar_driver);
+  ReadDriver(&top, "camera_driver", rig->path, &rig->camera_driver);
+  ReadSimulation(&top, &rig->simulation);
+  ReadLidarBoardDetector(&top, &rig->lidar_board_detector);
+  ReadCameraBoardDetector(&top, &rig->camera_board_detector);
+  ReadSampleCollector(&top, &rig->sample_collector);
+  ReadVoqSelector(&top, &rig->voq_selector, &rig->consistency);
+  ReadExtrinsicEstimator(&top, &rig->extrinsic_estimator, &rig->average);
+  ReadExtrinsicRefiner(&top, &rig->extrinsic_refiner);
+  top.RefuseUnknownKeys();
+}
+
+}  // namespace voqcal

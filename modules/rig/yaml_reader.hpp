@@ -1,0 +1,113 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <yaml-cpp/node/node.h>
+
+namespace voqcal {
+
+/// One YAML file and what is wrong in it. All errors are kept, so that a user sees them at once.
+class YamlDocument {
+ public:
+  /// A key that a reader asked for, given or not.
+  struct KnownKey {
+    std::string path;          ///< "camera.fx_px".
+    int line = 0;              ///< Of its value in the file; 0 if it is not given.
+    std::string default_text;  ///< Its value if it is not given; empty for required keys.
+  };
+
+  /// @param name  what errors call the file.
+  /// @throws std::runtime_error naming file and line if `text` is not one YAML mapping.
+  YamlDocument(std::string name, const std::string& text);
+
+  void AddError(int line, const std::string& text);
+
+  /// @throws std::runtime_error with one line for each error, in the order of the file.
+  void ThrowIfWrong() const;
+
+  const std::vector<KnownKey>& known_keys() const { return known_keys_; }
+
+ private:
+  friend class YamlSection;
+
+  std::string name_;
+  YAML::Node root_;
+  std::multimap<int, std::string> errors_;  ///< By line.
+  std::vector<KnownKey> known_keys_;
+};
+
+/// One mapping of a document. Keys that are not given leave the value as it is; values of a wrong
+/// type, repeated keys and keys that nobody read are errors of the document.
+class YamlSection {
+ public:
+  /// The top level. The document must outlive the section.
+  explicit YamlSection(YamlDocument* document);
+
+  /// A mapping within this one; empty if it is not given.
+  YamlSection Section(const std::string& key);
+  /// The same, and an error if it is not given.
+  YamlSection RequiredSection(const std::string& key);
+
+  bool Has(const std::string& key) const { return entries_.count(key) > 0; }
+
+  void Read(const std::string& key, double* value);  ///< Finite.
+  void Read(const std::string& key, int* value);
+  void Read(const std::string& key, std::uint32_t* value);
+  void Read(const std::string& key, bool* value);
+  void Read(const std::string& key, std::string* value);
+  void Read(const std::string& key, std::vector<double>* values);
+  void Read(const std::string& key, Eigen::Vector3d* value);
+  void Read(const std::string& key, std::vector<std::vector<double>>* rows);
+
+  /// Degrees in the file, radians here.
+  void ReadDegrees(const std::string& key, double* value_rad);
+
+  /// The same as Read, and an error if the key is not given.
+  template <typename Value>
+  void ReadRequired(const std::string& key, Value* value) {
+    is_required_ = true;
+    Read(key, value);
+    is_required_ = false;
+  }
+
+  /// True if every required key was given with a value of its type: checks of the whole make sense.
+  bool IsComplete() const { return is_complete_; }
+
+  /// An error at the key's value: "camera.lens_model must be ..., is "x"".
+  void AddError(const std::string& key, const std::string& rule);
+
+  /// Errors of this section as a whole, at the line of the key that they begin with, if it is here.
+  void AddProblems(const std::vector<std::string>& problems);
+
+  /// The keys that nobody has read become errors. The last thing to do with a section.
+  void RefuseUnknownKeys();
+
+ private:
+  struct Entry {
+    YAML::Node value;
+    int line = 0;  ///< Of the key.
+    bool is_read = false;
+  };
+
+  YamlSection(YamlDocument* document, YAML::Node node, std::string path, int line);
+
+  /// Notes that the key exists; its value, or nullptr if it is not given.
+  const YAML::Node* Find(const std::string& key, const std::string& default_text);
+  template <typename Value>
+  void ReadScalar(const std::string& key, const char* rule, Value* value);
+  std::string PathOf(const std::string& key) const;
+  int LineOf(const std::string& key) const;
+
+  YamlDocument* document_;
+  std::string path_;  ///< "camera"; empty at the top level.
+  int line_;
+  std::map<std::string, Entry> entries_;
+  bool is_required_ = false;
+  bool is_complete_ = true;
+};
+
+}  // namespace voqcal

@@ -1,22 +1,29 @@
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include <limits>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "core/board/board_sample.hpp"
 #include "core/camera/camera_model.hpp"
+#include "core/estimation/metres_per_pixel.hpp"
 #include "core/estimation/refine.hpp"
 
 namespace voqcal {
 
-/// How well an extrinsic fits one pose.
+/// How well an extrinsic fits one pose. All NaN if it puts the board where the camera cannot see
+/// it, or if there is no extrinsic to score.
 struct PoseScore {
-  double centre_px = 0.0;   ///< Reprojection error of the board's centre.
-  double centre_mm = 0.0;   ///< The same times the board's metres per pixel, as the paper defines it.
-  double corner_mm = 0.0;   ///< Mean distance of the 4 outline corners in the camera frame.
-  double normal_deg = 0.0;  ///< Angle between the camera's normal and the rotated lidar normal.
+  double centre_px =
+      std::numeric_limits<double>::quiet_NaN();  ///< Reprojection error of the board's centre.
+  /// The same times the board's metres per pixel, as the paper defines it.
+  double centre_mm = std::numeric_limits<double>::quiet_NaN();
+  /// Mean distance of the 4 outline corners in the camera frame, matched up to the board's
+  /// half-turn.
+  double corner_mm = std::numeric_limits<double>::quiet_NaN();
+  /// Angle between the camera's normal and the rotated lidar normal.
+  double normal_deg = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct Spread {
@@ -25,15 +32,11 @@ struct Spread {
   double max = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Over all poses of a scene.
+/// Over all poses of a scene; one score a sample, in order.
 struct SceneScore {
   std::vector<PoseScore> poses;
   Spread centre_px, centre_mm, corner_mm, normal_deg;
 };
-
-/// Metres on the board per pixel at the board: mean length of the outline's two diagonals in metres
-/// over their mean length in pixels.
-double MetresPerPixel(const BoardPose& pose_camera, const CameraModel& camera);
 
 PoseScore ScorePose(const BoardSample& sample,
                     const CameraModel& camera,
@@ -43,7 +46,8 @@ SceneScore ScoreScene(const std::vector<const BoardSample*>& samples,
                       const CameraModel& camera,
                       const Eigen::Isometry3d& T_camera_lidar);
 
-/// Each pose scored by the extrinsic refined without it, from the same start.
+/// Each pose scored by the extrinsic refined without it, from the same start. A pose without which
+/// the refinement is not usable scores NaN: at least four samples are needed.
 SceneScore LeaveOneOutScore(const std::vector<const BoardSample*>& samples,
                             const CameraModel& camera,
                             const Eigen::Isometry3d& T_camera_lidar_start,

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/geometry/rigid.hpp"
@@ -19,9 +19,10 @@ struct AverageOptions {
 /// The mean of the set results, as published: one z-score filter, then mean and spread.
 struct AveragedExtrinsic {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  Vector6d spread = Vector6d::Zero();  ///< Standard deviation of [rotation_rad; translation_m] on the left side.
-  std::vector<bool> is_kept;           ///< One for each set; unusable sets are never kept.
-  int num_kept = 0;                    ///< 0: nothing to average, the transform is meaningless.
+  Vector6d spread =
+      Vector6d::Zero();  ///< Standard deviation of [rotation_rad; translation_m] on the left side.
+  std::vector<bool> is_kept;  ///< One for each set; unusable sets are never kept.
+  int num_kept = 0;           ///< 0: nothing to average, the transform is meaningless.
 
   bool IsUsable() const { return num_kept > 0; }
 };

@@ -8,8 +8,8 @@
 namespace voqcal {
 
 struct ConsistencyOptions {
-  double max_distance_m = 0.06;   ///< Distances between two poses' centres agree within this...
-  double max_angle_rad = 0.10;    ///< ...and angles between their normals within this.
+  double max_distance_m = 0.06;  ///< Distances between two poses' centres agree within this...
+  double max_angle_rad = 0.10;   ///< ...and angles between their normals within this.
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;
@@ -17,8 +17,8 @@ struct ConsistencyOptions {
 
 /// A sample that does not fit the others, and why.
 struct InconsistentSample {
-  int sample = 0;       ///< Index into the samples.
-  std::string reason;   ///< "disagrees with 28 of 29 others: ...", for logs and reports.
+  int sample = 0;      ///< Index into the samples.
+  std::string reason;  ///< "disagrees with 28 of 29 others: ...", for logs and reports.
 };
 
 /// Which samples hold together. Distances between the centres of two poses and angles between their
@@ -27,6 +27,7 @@ struct Consistency {
   std::vector<int> consistent;  ///< Ascending indices of a largest subset that agrees pairwise.
   std::vector<InconsistentSample> inconsistent;
 };
-Consistency FindConsistent(const std::vector<BoardSample>& samples, const ConsistencyOptions& options);
+Consistency FindConsistent(const std::vector<BoardSample>& samples,
+                           const ConsistencyOptions& options);
 
 }  // namespace voqcal

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include <limits>
 #include <string>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "core/board/board_sample.hpp"
 #include "core/camera/camera_model.hpp"
@@ -15,10 +15,13 @@ namespace voqcal {
 enum class RefineStatus { kConverged, kNotConverged, kDegenerate };
 std::string ToString(RefineStatus status);
 
+/// Minimised: sum of weight * huber(|pixel error|^2) over the centre and the four outline corners
+/// of each pose. The centre is the lidar's best measured point (the errors of opposite edges
+/// cancel); the corners keep the problem determined where poses are few or close together.
 struct RefineOptions {
-  double centre_weight = 1.0;  ///< Weight of the centre's reprojection.
-  double corner_weight = 0.1;  ///< Weight of each outline corner's reprojection; 0 leaves them out.
-  double huber_px = 3.0;       ///< Residuals beyond this count linearly.
+  double centre_weight = 1.0;   ///< Weight of the centre's squared reprojection error; positive.
+  double corner_weight = 0.05;  ///< Weight of each outline corner's; 0 leaves them out.
+  double huber_px = 3.0;        ///< Residuals beyond this count linearly.
   int max_iterations = 100;
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
@@ -38,8 +41,8 @@ struct RefinedExtrinsic {
   std::string Summary() const;  ///< One line for a log.
 };
 
-/// Refines `T_camera_lidar_start` over every pose: robust reprojection of each pose's lidar centre and
-/// corners against the camera's. Corners are matched up to the board's half-turn by the start.
+/// Refines `T_camera_lidar_start` over every pose: robust reprojection of each pose's lidar centre
+/// and corners against the camera's. Corners are matched up to the board's half-turn by the start.
 RefinedExtrinsic RefineExtrinsic(const std::vector<const BoardSample*>& samples,
                                  const CameraModel& camera,
                                  const Eigen::Isometry3d& T_camera_lidar_start,

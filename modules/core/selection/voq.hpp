@@ -14,8 +14,8 @@ struct VoqSet {
   std::array<int, 3> samples{};  ///< Indices into the samples, ascending.
   double kappa_lidar = 0.0;      ///< ||N^-1||_F ||N||_F of the three lidar normals; at least 3.
   double kappa_camera = 0.0;
-  double board_error_mm = 0.0;   ///< e_be: mean over the poses of e_dim.
-  double voq = 0.0;              ///< max(kappa_lidar, kappa_camera) + e_be, as published.
+  double board_error_mm = 0.0;  ///< e_be: mean over the poses of e_dim.
+  double voq = 0.0;             ///< max(kappa_lidar, kappa_camera) + e_be, as published.
 };
 
 struct VoqOptions {
@@ -25,11 +25,13 @@ struct VoqOptions {
   std::vector<std::string> Problems() const;
 };
 
-/// e_dim, Eq. for the sum of dimension errors: sum over the 4 edges of |measured - true|, millimetres.
+/// e_dim, Eq. for the sum of dimension errors: sum over the 4 edges of |measured - true|,
+/// millimetres.
 double BoardDimensionErrorMm(const std::array<double, 4>& edge_lengths_m, const BoardSpec& board);
 
-/// kappa(N) = ||N^-1||_F ||N||_F of the matrix whose rows are the unit normals; infinite if singular.
-/// (The paper prints ||N^-1 N||; its text and its authors' code take the Frobenius condition number.)
+/// kappa(N) = ||N^-1||_F ||N||_F of the matrix whose rows are the unit normals; infinite if
+/// singular. (The paper prints ||N^-1 N||; its text and its authors' code take the Frobenius
+/// condition number.)
 double NormalConditionNumber(const Eigen::Vector3d& n0,
                              const Eigen::Vector3d& n1,
                              const Eigen::Vector3d& n2);

@@ -1,0 +1,96 @@
+#include "core/assessment/scores.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/estimation/half_turn.hpp"
+#include "core/geometry/rigid.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr double kMillimetresPerMetre = 1000.0;
+constexpr double kDegreesPerRadian = 180.0 / M_PI;
+
+double MeanCornerDistanceM(const BoardPose& pose_lidar,
+                           const BoardPose& pose_camera,
+                           const Eigen::Isometry3d& T_camera_lidar) {
+  double sum_m = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    sum_m += (T_camera_lidar * pose_lidar.corners_m[i] - pose_camera.corners_m[i]).norm();
+  }
+  return sum_m / 4.0;
+}
+
+Spread SpreadOf(const std::vector<PoseScore>& poses, double PoseScore::*figure) {
+  Spread spread;
+  if (poses.empty()) return spread;
+  const double num_poses = static_cast<double>(poses.size());
+  double sum = 0.0;
+  for (const PoseScore& pose : poses) sum += pose.*figure;
+  spread.mean = sum / num_poses;
+  if (!std::isfinite(spread.mean)) return {};
+  double sum_of_squares = 0.0;
+  spread.max = 0.0;
+  for (const PoseScore& pose : poses) {
+    sum_of_squares += (pose.*figure - spread.mean) * (pose.*figure - spread.mean);
+    spread.max = std::max(spread.max, pose.*figure);
+  }
+  spread.std = std::sqrt(sum_of_squares / num_poses);
+  return spread;
+}
+
+SceneScore Summarise(std::vector<PoseScore> poses) {
+  SceneScore scene;
+  scene.centre_px = SpreadOf(poses, &PoseScore::centre_px);
+  scene.centre_mm = SpreadOf(poses, &PoseScore::centre_mm);
+  scene.corner_mm = SpreadOf(poses, &PoseScore::corner_mm);
+  scene.normal_deg = SpreadOf(poses, &PoseScore::normal_deg);
+  scene.poses = std::move(poses);
+  return scene;
+}
+
+}  // namespace
+
+PoseScore ScorePose(const BoardSample& sample,
+                    const CameraModel& camera,
+                    const Eigen::Isometry3d& T_camera_lidar) {
+  const BoardPose& seen = sample.camera.pose;
+  const BoardPose lidar = LidarPoseInCameraOrder(sample, T_camera_lidar);
+  const Eigen::Vector3d centre_camera_m = T_camera_lidar * lidar.centre_m;
+  if (!camera.IsInFront(centre_camera_m) || !camera.IsInFront(seen.centre_m)) return {};
+  PoseScore score;
+  score.centre_px = (camera.Project(centre_camera_m) - camera.Project(seen.centre_m)).norm();
+  score.centre_mm = kMillimetresPerMetre * MetresPerPixel(seen, camera) * score.centre_px;
+  score.corner_mm = kMillimetresPerMetre * MeanCornerDistanceM(lidar, seen, T_camera_lidar);
+  score.normal_deg =
+      kDegreesPerRadian * AngleBetween(T_camera_lidar.linear() * lidar.normal, seen.normal);
+  return score;
+}
+
+SceneScore ScoreScene(const std::vector<const BoardSample*>& samples,
+                      const CameraModel& camera,
+                      const Eigen::Isometry3d& T_camera_lidar) {
+  std::vector<PoseScore> poses;
+  for (const BoardSample* sample : samples) {
+    poses.push_back(ScorePose(*sample, camera, T_camera_lidar));
+  }
+  return Summarise(std::move(poses));
+}
+
+SceneScore LeaveOneOutScore(const std::vector<const BoardSample*>& samples,
+                            const CameraModel& camera,
+                            const Eigen::Isometry3d& T_camera_lidar_start,
+                            const RefineOptions& options) {
+  std::vector<PoseScore> poses(samples.size());
+  for (std::size_t left_out = 0; left_out < samples.size(); ++left_out) {
+    std::vector<const BoardSample*> others = samples;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+    const RefinedExtrinsic refined = RefineExtrinsic(others, camera, T_camera_lidar_start, options);
+    if (!refined.IsUsable()) continue;
+    poses[left_out] = ScorePose(*samples[left_out], camera, refined.T_camera_lidar);
+  }
+  return Summarise(std::move(poses));
+}
+
+}  // namespace voqcal

@@ -1,0 +1,93 @@
+#include "core/estimation/average.hpp"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace voqcal {
+namespace {
+
+// The mean transform and each member's departure from it, [rotation_rad; translation_m], left side.
+struct MeanAndDepartures {
+  Eigen::Isometry3d T_mean = Eigen::Isometry3d::Identity();
+  std::vector<Vector6d> departures;
+};
+
+MeanAndDepartures AboutTheMean(const std::vector<Eigen::Isometry3d>& transforms) {
+  std::vector<Eigen::Matrix3d> rotations;
+  Eigen::Vector3d translation_sum_m = Eigen::Vector3d::Zero();
+  for (const Eigen::Isometry3d& T : transforms) {
+    rotations.push_back(T.linear());
+    translation_sum_m += T.translation();
+  }
+  MeanAndDepartures about;
+  about.T_mean.linear() = MeanRotation(rotations);
+  about.T_mean.translation() = translation_sum_m / static_cast<double>(transforms.size());
+  for (const Eigen::Isometry3d& T : transforms) {
+    about.departures.push_back(DifferenceLeft(about.T_mean, T));
+  }
+  return about;
+}
+
+// Sample standard deviation (n - 1) of each parameter. One member shows no spread: NaN.
+Vector6d StandardDeviation(const std::vector<Vector6d>& departures) {
+  if (departures.size() < 2) return Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  Vector6d sum_of_squares = Vector6d::Zero();
+  for (const Vector6d& d : departures) sum_of_squares += d.cwiseAbs2();
+  return (sum_of_squares / static_cast<double>(departures.size() - 1)).cwiseSqrt();
+}
+
+bool IsWithin(const Vector6d& departure, const Vector6d& limit) {
+  // Equal results have no spread; the slack keeps their rounding from looking like an outlier.
+  constexpr double kRounding = 1e-12;
+  return (departure.cwiseAbs().array() <= limit.array() + kRounding).all();
+}
+
+}  // namespace
+
+std::vector<std::string> AverageOptions::Problems() const {
+  std::vector<std::string> problems;
+  if (!(max_z_score > 0.0)) {
+    std::ostringstream text;
+    text << "max_z_score must be positive, is " << max_z_score;
+    problems.push_back(text.str());
+  }
+  return problems;
+}
+
+AveragedExtrinsic AverageExtrinsics(const std::vector<SetExtrinsic>& sets,
+                                    const AverageOptions& options) {
+  const std::vector<std::string> problems = options.Problems();
+  if (!problems.empty()) throw std::invalid_argument("AverageOptions: " + problems.front());
+
+  AveragedExtrinsic average;
+  average.is_kept.assign(sets.size(), false);
+  std::vector<Eigen::Isometry3d> usable;
+  std::vector<std::size_t> usable_index;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    if (!sets[i].IsUsable()) continue;
+    usable.push_back(sets[i].T_camera_lidar);
+    usable_index.push_back(i);
+  }
+  if (usable.empty()) return average;
+
+  const MeanAndDepartures all = AboutTheMean(usable);
+  Vector6d limit = options.max_z_score * StandardDeviation(all.departures);
+  if (usable.size() == 1) limit.setZero();  // one set is its own mean
+  std::vector<Eigen::Isometry3d> kept;
+  for (std::size_t i = 0; i < usable.size(); ++i) {
+    if (!IsWithin(all.departures[i], limit)) continue;
+    kept.push_back(usable[i]);
+    average.is_kept[usable_index[i]] = true;
+  }
+  if (kept.empty()) return average;
+
+  const MeanAndDepartures about = AboutTheMean(kept);
+  average.T_camera_lidar = about.T_mean;
+  average.spread = StandardDeviation(about.departures);
+  average.num_kept = static_cast<int>(kept.size());
+  return average;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,240 @@
+#include "core/estimation/refine.hpp"
+
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include "core/estimation/refine_terms.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr std::size_t kMinSamples = 3;
+
+void RequireUsable(const RefineOptions& options) {
+  const std::vector<std::string> problems = options.Problems();
+  if (!problems.empty()) throw std::invalid_argument("RefineOptions: " + problems.front());
+}
+
+// Every point that a term projects lies where the lens model is defined.
+bool IsVisible(const BoardPose& pose_lidar,
+               const CameraModel& camera,
+               const Eigen::Isometry3d& T_camera_lidar) {
+  if (!camera.IsInFront(T_camera_lidar * pose_lidar.centre_m)) return false;
+  for (const Eigen::Vector3d& corner_m : pose_lidar.corners_m) {
+    if (!camera.IsInFront(T_camera_lidar * corner_m)) return false;
+  }
+  return true;
+}
+
+bool AllVisible(const std::vector<const BoardSample*>& samples,
+                const CameraModel& camera,
+                const Eigen::Isometry3d& T_camera_lidar) {
+  for (const BoardSample* sample : samples) {
+    if (!IsVisible(sample->lidar.pose, camera, T_camera_lidar)) return false;
+    if (!IsVisible(sample->camera.pose, camera, Eigen::Isometry3d::Identity())) return false;
+  }
+  return true;
+}
+
+bool Minimise(const std::vector<RefineTerm>& terms, const RefineOptions& options, Vector6d* delta) {
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(ownership);
+  for (const RefineTerm& term : terms) {
+    problem.AddResidualBlock(
+        term.cost.get(),
+        new ceres::ScaledLoss(
+            new ceres::HuberLoss(options.huber_px), term.weight, ceres::TAKE_OWNERSHIP),
+        delta->data());
+  }
+  ceres::Solver::Options solver_options;
+  solver_options.linear_solver_type = ceres::DENSE_QR;
+  solver_options.num_threads = 1;
+  solver_options.logging_type = ceres::SILENT;
+  solver_options.max_num_iterations = options.max_iterations;
+  // Tight: leave-one-out and replays compare minima, not places where a solver stopped.
+  solver_options.function_tolerance = 1e-14;
+  solver_options.gradient_tolerance = 1e-12;
+  solver_options.parameter_tolerance = 1e-12;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options, &problem, &summary);
+  return summary.termination_type == ceres::CONVERGENCE;
+}
+
+// All residuals of one pose, stacked.
+struct PosePull {
+  Eigen::MatrixXd J;     // m x 6
+  Eigen::VectorXd pull;  // m: weight * rho' * r
+};
+
+struct Linearisation {
+  Matrix6d curvature = Matrix6d::Zero();  // second derivative of the cost, Gauss-Newton's
+  std::vector<PosePull> poses;
+};
+
+Linearisation LineariseAtStart(const std::vector<RefineTerm>& terms,
+                               std::size_t num_poses,
+                               double huber_px) {
+  constexpr Eigen::Index kRowsPerTerm = 2;
+  const auto terms_per_pose = static_cast<Eigen::Index>(terms.size() / num_poses);
+  const Eigen::Index rows_per_pose = kRowsPerTerm * terms_per_pose;
+  Linearisation linear;
+  linear.poses.assign(num_poses,
+                      {Eigen::MatrixXd(rows_per_pose, 6), Eigen::VectorXd(rows_per_pose)});
+
+  const Vector6d delta = Vector6d::Zero();
+  const double* parameters = delta.data();
+  const ceres::HuberLoss huber(huber_px);
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    Eigen::Vector2d r;
+    Eigen::Matrix<double, kRowsPerTerm, 6, Eigen::RowMajor> J;
+    double* jacobian = J.data();
+    if (!terms[i].cost->Evaluate(&parameters, r.data(), &jacobian)) {
+      throw std::logic_error("a visible point does not project");
+    }
+    std::array<double, 3> rho{};  // value, first and second derivative by |r|^2
+    huber.Evaluate(r.squaredNorm(), rho.data());
+    // Second derivative of rho(|r|^2) / 2 by r: beyond the Huber width, only across r.
+    const Eigen::Matrix2d curvature_r =
+        rho[1] * Eigen::Matrix2d::Identity() + 2.0 * rho[2] * r * r.transpose();
+    linear.curvature += terms[i].weight * J.transpose() * curvature_r * J;
+    PosePull& pose = linear.poses[static_cast<std::size_t>(terms[i].pose)];
+    const Eigen::Index row = kRowsPerTerm * (static_cast<Eigen::Index>(i) % terms_per_pose);
+    pose.J.middleRows<kRowsPerTerm>(row) = J;
+    pose.pull.segment<kRowsPerTerm>(row) = terms[i].weight * rho[1] * r;
+  }
+  return linear;
+}
+
+// The inverse, unless a combination of parameters is left to rounding: units are taken out first.
+bool InvertIfRegular(const Matrix6d& curvature, Matrix6d* inverse) {
+  constexpr double kLeastReciprocalCondition = 1e-8;
+  const Vector6d scale = curvature.diagonal().cwiseSqrt().cwiseInverse();
+  if (!scale.allFinite()) return false;
+  const Matrix6d scaled = scale.asDiagonal() * curvature * scale.asDiagonal();
+  const Vector6d eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Matrix6d>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(eigenvalues[0] > kLeastReciprocalCondition * eigenvalues[5])) return false;
+  *inverse = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  return true;
+}
+
+// Covariance of an M-estimator whose residuals are correlated within a pose (one lidar board moves
+// its centre and its corners together) but not between poses:
+//     A^-1 (sum over poses of J_p' S J_p) A^-1 * m n / (m n - 6)
+// A: curvature, J_p: all m rows of pose p, S: m x m second moment of weight * rho' * r over the n
+// poses. Pooling S follows Pan 2001, "On the robust variance estimator in generalised estimating
+// equations", Biometrika 88; unlike each pose's own product it keeps full rank with few poses.
+Matrix6d PooledSandwich(const Linearisation& linear, const Matrix6d& curvature_inverse) {
+  const auto num_poses = static_cast<double>(linear.poses.size());
+  const Eigen::Index rows_per_pose = linear.poses.front().pull.size();
+  Eigen::MatrixXd second_moment = Eigen::MatrixXd::Zero(rows_per_pose, rows_per_pose);
+  for (const PosePull& pose : linear.poses) {
+    second_moment += pose.pull * pose.pull.transpose() / num_poses;
+  }
+  Matrix6d pull_variance = Matrix6d::Zero();
+  for (const PosePull& pose : linear.poses) {
+    pull_variance += pose.J.transpose() * second_moment * pose.J;
+  }
+  const double num_residuals = num_poses * static_cast<double>(rows_per_pose);
+  const double lost_to_fit = num_residuals / (num_residuals - 6.0);
+  const Matrix6d covariance = lost_to_fit * curvature_inverse * pull_variance * curvature_inverse;
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+double CentreRmsPx(const std::vector<const BoardSample*>& samples,
+                   const CameraModel& camera,
+                   const Eigen::Isometry3d& T_camera_lidar) {
+  double sum_px2 = 0.0;
+  for (const BoardSample* sample : samples) {
+    const Eigen::Vector3d centre_m = T_camera_lidar * sample->lidar.pose.centre_m;
+    sum_px2 +=
+        (camera.Project(centre_m) - camera.Project(sample->camera.pose.centre_m)).squaredNorm();
+  }
+  return std::sqrt(sum_px2 / static_cast<double>(samples.size()));
+}
+
+}  // namespace
+
+std::string ToString(RefineStatus status) {
+  switch (status) {
+    case RefineStatus::kConverged:
+      return "converged";
+    case RefineStatus::kNotConverged:
+      return "not converged";
+    case RefineStatus::kDegenerate:
+      return "degenerate";
+  }
+  throw std::logic_error("unknown RefineStatus");
+}
+
+std::vector<std::string> RefineOptions::Problems() const {
+  std::vector<std::string> problems;
+  const auto require = [&problems](bool is_met, const char* rule, double value) {
+    if (is_met) return;
+    std::ostringstream text;
+    text << rule << ", is " << value;
+    problems.push_back(text.str());
+  };
+  require(centre_weight > 0.0, "centre_weight must be positive", centre_weight);
+  require(corner_weight >= 0.0, "corner_weight must not be negative", corner_weight);
+  require(huber_px > 0.0, "huber_px must be positive", huber_px);
+  require(max_iterations > 0, "max_iterations must be positive", max_iterations);
+  return problems;
+}
+
+std::string RefinedExtrinsic::Summary() const {
+  std::ostringstream text;
+  text << "refinement " << ToString(status);
+  if (!IsUsable()) return text.str();
+  constexpr double kDegreesPerRadian = 180.0 / M_PI;
+  const Vector6d sigma = covariance.diagonal().cwiseSqrt();
+  text.precision(3);
+  text << ": centres " << reprojection_rms_px << " px RMS, 1 sigma up to "
+       << kDegreesPerRadian * sigma.head<3>().maxCoeff() << " deg and "
+       << 1000.0 * sigma.tail<3>().maxCoeff() << " mm";
+  return text.str();
+}
+
+RefinedExtrinsic RefineExtrinsic(const std::vector<const BoardSample*>& samples,
+                                 const CameraModel& camera,
+                                 const Eigen::Isometry3d& T_camera_lidar_start,
+                                 const RefineOptions& options) {
+  RequireUsable(options);
+  RefinedExtrinsic refined;
+  refined.T_camera_lidar = T_camera_lidar_start;
+  if (samples.size() < kMinSamples) {
+    refined.status = RefineStatus::kDegenerate;
+    return refined;
+  }
+  if (!AllVisible(samples, camera, T_camera_lidar_start)) return refined;
+
+  Vector6d delta = Vector6d::Zero();
+  const auto terms = MakeRefineTerms(samples, camera, T_camera_lidar_start, options);
+  if (!Minimise(terms, options, &delta)) return refined;
+  const Eigen::Isometry3d T_camera_lidar = PerturbLeft(T_camera_lidar_start, delta);
+  if (!AllVisible(samples, camera, T_camera_lidar)) return refined;
+
+  refined.T_camera_lidar = T_camera_lidar;
+  refined.reprojection_rms_px = CentreRmsPx(samples, camera, T_camera_lidar);
+  const auto terms_at_minimum = MakeRefineTerms(samples, camera, T_camera_lidar, options);
+  const Linearisation linear = LineariseAtStart(terms_at_minimum, samples.size(), options.huber_px);
+  Matrix6d curvature_inverse;
+  if (!InvertIfRegular(linear.curvature, &curvature_inverse)) {
+    refined.status = RefineStatus::kDegenerate;
+    return refined;
+  }
+  refined.covariance = PooledSandwich(linear, curvature_inverse);
+  refined.status = RefineStatus::kConverged;
+  return refined;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,70 @@
+#include "core/estimation/set_cost.hpp"
+
+namespace voqcal {
+
+std::vector<SetPose> PosesOf(const std::vector<const BoardSample*>& set,
+                             const CameraModel& camera) {
+  std::vector<SetPose> poses;
+  for (const BoardSample* sample : set) {
+    const BoardPose& lidar = sample->lidar.pose;
+    const BoardPose& seen = sample->camera.pose;
+    const auto& c = seen.corners_m;
+    poses.push_back({lidar.normal,
+                     seen.normal,
+                     lidar.centre_m,
+                     seen.centre_m,
+                     camera.Project(seen.centre_m),
+                     ((c[1] - c[0]) + (c[2] - c[3])).normalized(),
+                     ((c[2] - c[1]) + (c[3] - c[0])).normalized()});
+  }
+  return poses;
+}
+
+bool SetCost::operator()(const double* delta, double* residuals, double* jacobian) const {
+  const LeftPerturbation at(T_camera_lidar_start, Eigen::Map<const Vector6d>(delta));
+  Eigen::Map<Eigen::VectorXd> r(residuals, NumResiduals());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    Residuals r_pose;
+    Jacobian J_pose;
+    if (!Evaluate(poses[i], at, &r_pose, jacobian != nullptr ? &J_pose : nullptr)) {
+      // TinySolver does not ask whether a trial succeeded; it rejects one that costs more.
+      constexpr double kRejected = 1e12;
+      r.setConstant(kRejected);
+      return false;
+    }
+    const auto row = static_cast<Eigen::Index>(kResidualsPerPose * i);
+    r.segment<kResidualsPerPose>(row) = r_pose;
+    if (jacobian == nullptr) continue;
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 6>> J(jacobian, NumResiduals(), 6);
+    J.middleRows<kResidualsPerPose>(row) = J_pose;
+  }
+  return true;
+}
+
+bool SetCost::Evaluate(const SetPose& pose,
+                       const LeftPerturbation& at,
+                       Residuals* r,
+                       Jacobian* J) const {
+  const Eigen::Vector3d normal = at.T_camera_lidar().linear() * pose.normal_lidar;
+  const Eigen::Vector3d centre_m = at.T_camera_lidar() * pose.centre_lidar_m;
+  if (!(centre_m.z() > 0.0)) return false;
+  Matrix23d J_px_centre;
+  const Eigen::Vector2d centre_px =
+      ProjectWithJacobian(camera, centre_m, J != nullptr ? &J_px_centre : nullptr);
+  *r << pose.edge_x_camera.dot(normal) / options.sigma_normal_rad,
+      pose.edge_y_camera.dot(normal) / options.sigma_normal_rad,
+      (normal - pose.normal_camera) / options.sigma_normal_rad,
+      (centre_m - pose.centre_camera_m) / options.sigma_centre_m,
+      (centre_px - pose.centre_px) / options.sigma_centre_px;
+  if (J == nullptr) return true;
+  const Matrix36d J_normal = at.DirectionJacobian(normal);
+  const Matrix36d J_centre = at.PointJacobian(centre_m);
+  J->row(0) = pose.edge_x_camera.transpose() * J_normal / options.sigma_normal_rad;
+  J->row(1) = pose.edge_y_camera.transpose() * J_normal / options.sigma_normal_rad;
+  J->middleRows<3>(2) = J_normal / options.sigma_normal_rad;
+  J->middleRows<3>(5) = J_centre / options.sigma_centre_m;
+  J->middleRows<2>(8) = J_px_centre * J_centre / options.sigma_centre_px;
+  return true;
+}
+
+}  // namespace voqcal

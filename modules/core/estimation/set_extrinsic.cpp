@@ -1,0 +1,135 @@
+#include "core/estimation/set_extrinsic.hpp"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include <Eigen/SVD>
+#include <ceres/tiny_solver.h>
+
+#include "core/estimation/set_cost.hpp"
+#include "core/geometry/rigid.hpp"
+
+namespace voqcal {
+namespace {
+
+// Mean of n_camera n_lidar^T: what the rotation of the normals is made from (Kabsch 1976).
+Eigen::Matrix3d NormalCorrelation(const std::vector<const BoardSample*>& set) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const BoardSample* sample : set) {
+    sum += sample->camera.pose.normal * sample->lidar.pose.normal.transpose();
+  }
+  return sum / static_cast<double>(set.size());
+}
+
+// The second singular value is about the variance of the normals' directions across their mean. Not
+// above the normals' own noise, it leaves the rotation about the mean normal to chance.
+bool FixesRotation(const Eigen::Matrix3d& normal_correlation, double sigma_normal_rad) {
+  if (!normal_correlation.allFinite()) return false;
+  const Eigen::Vector3d singular_values =
+      Eigen::JacobiSVD<Eigen::Matrix3d>(normal_correlation).singularValues();
+  return singular_values[1] > sigma_normal_rad * sigma_normal_rad;
+}
+
+bool AllInFront(const std::vector<const BoardSample*>& set,
+                const CameraModel& camera,
+                const Eigen::Isometry3d& T_camera_lidar) {
+  for (const BoardSample* sample : set) {
+    if (!camera.IsInFront(T_camera_lidar * sample->lidar.pose.centre_m)) return false;
+    if (!camera.IsInFront(sample->camera.pose.centre_m)) return false;
+  }
+  return true;
+}
+
+bool AllFinite(const std::vector<const BoardSample*>& set) {
+  for (const BoardSample* sample : set) {
+    const BoardPose& seen = sample->camera.pose;
+    bool is_finite = sample->lidar.pose.centre_m.allFinite() && seen.centre_m.allFinite();
+    for (const Eigen::Vector3d& corner_m : seen.corners_m) {
+      is_finite = is_finite && corner_m.allFinite();
+    }
+    if (!is_finite) return false;
+  }
+  return true;
+}
+
+void RequirePositive(const char* name, double value, std::vector<std::string>* problems) {
+  if (value > 0.0) return;
+  std::ostringstream text;
+  text << name << " must be positive, is " << value;
+  problems->push_back(text.str());
+}
+
+}  // namespace
+
+std::string ToString(SetStatus status) {
+  switch (status) {
+    case SetStatus::kConverged:
+      return "converged";
+    case SetStatus::kNotConverged:
+      return "not converged";
+    case SetStatus::kDegenerate:
+      return "degenerate";
+  }
+  throw std::logic_error("unknown SetStatus");
+}
+
+std::vector<std::string> SetExtrinsicOptions::Problems() const {
+  std::vector<std::string> problems;
+  RequirePositive("sigma_normal_rad", sigma_normal_rad, &problems);
+  RequirePositive("sigma_centre_m", sigma_centre_m, &problems);
+  RequirePositive("sigma_centre_px", sigma_centre_px, &problems);
+  RequirePositive("max_iterations", max_iterations, &problems);
+  return problems;
+}
+
+Eigen::Isometry3d AnalyticExtrinsic(const std::vector<const BoardSample*>& set) {
+  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
+  T_camera_lidar.linear() = NearestRotation(NormalCorrelation(set));
+  Eigen::Vector3d translation_sum_m = Eigen::Vector3d::Zero();
+  for (const BoardSample* sample : set) {
+    translation_sum_m +=
+        sample->camera.pose.centre_m - T_camera_lidar.linear() * sample->lidar.pose.centre_m;
+  }
+  T_camera_lidar.translation() = translation_sum_m / static_cast<double>(set.size());
+  return T_camera_lidar;
+}
+
+SetExtrinsic EstimateSetExtrinsic(const std::vector<const BoardSample*>& set,
+                                  const CameraModel& camera,
+                                  const SetExtrinsicOptions& options) {
+  const std::vector<std::string> problems = options.Problems();
+  if (!problems.empty()) throw std::invalid_argument("SetExtrinsicOptions: " + problems.front());
+
+  SetExtrinsic result;
+  constexpr std::size_t kMinPoses = 3;
+  if (set.size() < kMinPoses || !AllFinite(set) ||
+      !FixesRotation(NormalCorrelation(set), options.sigma_normal_rad)) {
+    result.status = SetStatus::kDegenerate;
+    return result;
+  }
+  const Eigen::Isometry3d T_camera_lidar_start = AnalyticExtrinsic(set);
+  result.T_camera_lidar = T_camera_lidar_start;
+  if (!AllInFront(set, camera, T_camera_lidar_start)) return result;
+
+  const std::vector<SetPose> poses = PosesOf(set, camera);
+  const SetCost cost{poses, camera, T_camera_lidar_start, options};
+  ceres::TinySolver<SetCost> solver;
+  solver.options.max_num_iterations = options.max_iterations;
+  solver.options.function_tolerance = 1e-14;  // TinySolver's is absolute, of whitened residuals
+  solver.options.cost_threshold = 1e-24;
+  Vector6d delta = Vector6d::Zero();
+  solver.Solve(cost, &delta);
+
+  result.T_camera_lidar = PerturbLeft(T_camera_lidar_start, delta);
+  result.cost = solver.summary.final_cost;
+  const bool has_converged =
+      solver.summary.status != ceres::TinySolver<SetCost>::HIT_MAX_ITERATIONS;
+  if (has_converged && delta.allFinite() && AllInFront(set, camera, result.T_camera_lidar)) {
+    result.status = SetStatus::kConverged;
+  }
+  return result;
+}
+
+}  // namespace voqcal

@@ -200,8 +200,6 @@ void ReadExtrinsicRefiner(YamlSection* top, RefineOptions* options) {
   YamlSection section = top->Section("extrinsic_refiner");
   section.Read("centre_weight", &options->centre_weight);
   section.Read("corner_weight", &options->corner_weight);
-  section.Read("depth_weight", &options->depth_weight);
-  section.Read("normal_weight", &options->normal_weight);
   section.Read("huber_px", &options->huber_px);
   section.Read("max_iterations", &options->max_iterations);
   Finish(*options, &section);

@@ -1,0 +1,196 @@
+#include "core/board/board_candidate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <set>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "core/board/outline_checks.hpp"
+#include "core/board/outline_edges.hpp"
+#include "core/board/outline_fit.hpp"
+#include "core/board/patch_view.hpp"
+#include "core/board/plane_fit.hpp"
+
+namespace voqcal {
+namespace {
+
+/// Half of the beams' footprint: where a beam is cut in half by an edge, its return is as likely
+/// the board's as not.
+double BlurM(double range_m) {
+  constexpr double kApertureM = 0.003;
+  constexpr double kDivergenceRad = 0.001;
+  return kApertureM + kDivergenceRad * range_m;
+}
+
+Eigen::Isometry3d TransformOf(const PlaneFrame& frame, const RectanglePose& pose) {
+  Eigen::Isometry3d T_lidar_board = Eigen::Isometry3d::Identity();
+  Eigen::Matrix3d R;
+  R.col(0) = std::cos(pose.angle_rad) * frame.e1 + std::sin(pose.angle_rad) * frame.e2;
+  R.col(2) = frame.plane.normal;
+  R.col(1) = R.col(2).cross(R.col(0));
+  T_lidar_board.linear() = R;
+  T_lidar_board.translation() = frame.ToLidar(pose.centre_m);
+  return T_lidar_board;
+}
+
+/// The half-turn of the rectangle whose y axis points up; if that is nearly level, whose x axis
+/// does.
+RectanglePose Upright(const PlaneFrame& frame, RectanglePose pose) {
+  constexpr double kLevel = 0.02;  // of the axis' height: about one degree
+  constexpr double kPi = 3.14159265358979323846;
+  const Eigen::Matrix3d R = TransformOf(frame, pose).linear();
+  const double up = std::abs(R(2, 1)) > kLevel ? R(2, 1) : R(2, 0);
+  if (up < 0) pose.angle_rad += kPi;
+  return pose;
+}
+
+/// Everything about one patch while it is measured.
+struct Measurement {
+  PatchView view;
+  PlaneFrame frame;
+  OutlineModel model;
+  OutlineFit outline;
+  std::vector<std::size_t> board_hits;  // for view.Beam()
+};
+
+/// A first rectangle on the patch's own plane.
+Measurement Begin(const PlanarPatch& patch,
+                  const std::vector<LidarBeam>& beams,
+                  const BoardSpec& board) {
+  PlaneFit plane = patch.plane;
+  plane.point_m = patch.middle_m - plane.DistanceM(patch.middle_m) * plane.normal;
+  const double diagonal_m = std::hypot(board.width_m, board.height_m);
+  Measurement m{PatchView(beams, plane.point_m, diagonal_m), PlaneFrame(plane), {}, {}, {}};
+  m.model.width_m = board.width_m;
+  m.model.height_m = board.height_m;
+  m.model.blur_m = BlurM(plane.point_m.norm());
+  m.view.Classify(m.frame);
+  m.outline = SearchOutline(m.view.Outline(), m.model, Eigen::Vector2d::Zero());
+  return m;
+}
+
+/// Plane and outline in turn: the outline says which points are the board's, and the plane where
+/// the beams meet it. False if too few points are left.
+bool Refine(Measurement* m) {
+  constexpr int kNumRounds = 3;
+  constexpr std::size_t kMinHits = 30;
+  constexpr double kPlaneScaleM = 0.02;  // Cauchy: twice the noise
+  constexpr double kMarginM = -0.005;    // the outermost returns are partly of what lies behind
+  for (int round = 0; round < kNumRounds; ++round) {
+    m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, kMarginM);
+    if (m->board_hits.size() < kMinHits) return false;
+    const Eigen::Isometry3d T_lidar_board = TransformOf(m->frame, m->outline.pose);
+    const Eigen::Vector3d centre_m = T_lidar_board.translation();
+    const Eigen::Vector3d width_axis = T_lidar_board.linear().col(0);
+    PlaneFit plane =
+        FitPlaneRobustly(m->view.PositionsM(m->board_hits), m->frame.plane, kPlaneScaleM);
+    plane.point_m = centre_m - plane.DistanceM(centre_m) * plane.normal;
+    m->frame = PlaneFrame(plane);
+    m->view.Classify(m->frame);
+    const double angle_rad = std::atan2(m->frame.e2.dot(width_axis), m->frame.e1.dot(width_axis));
+    m->outline = RefineOutline(m->view.Outline(), m->model, {Eigen::Vector2d::Zero(), angle_rad});
+  }
+  m->outline = EvaluateOutline(
+      m->view.Outline(), m->model, Upright(m->frame, m->outline.pose), m->outline.spill_m);
+  m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, 0.0);
+  return m->board_hits.size() >= kMinHits;
+}
+
+std::vector<std::uint16_t> RingsOf(const Measurement& m, const PointCloud& cloud_lidar_m) {
+  std::vector<std::uint16_t> rings;
+  if (!cloud_lidar_m.has_ring) return rings;
+  for (const std::size_t i : m.board_hits) {
+    rings.push_back(cloud_lidar_m.points[m.view.Beam(i).point].ring);
+  }
+  return rings;
+}
+
+/// Of [rotation_rad; translation_m], left side. The outline gives the shift in the plane and the
+/// turn about the normal; the plane gives the tilts, and an offset that moves the centre along its
+/// ray, because the outline was seen along rays.
+Matrix6d CovarianceOf(const Eigen::Isometry3d& T_lidar_board,
+                      const Measurement& m,
+                      const PointCloud& cloud_lidar_m) {
+  const Eigen::Matrix3d R = T_lidar_board.linear();
+  const Eigen::Vector3d centre_m = T_lidar_board.translation();
+  const Eigen::Matrix3d plane = PlaneCovariance(m.view.PositionsM(m.board_hits),
+                                                RingsOf(m, cloud_lidar_m),
+                                                m.frame.plane,
+                                                centre_m,
+                                                R.col(0),
+                                                R.col(1));
+  const Eigen::Matrix3d outline = m.outline.PoseCovariance();
+  const Eigen::Vector3d ray = centre_m.normalized();
+  Eigen::Matrix<double, 6, 3> from_plane = Eigen::Matrix<double, 6, 3>::Zero();
+  from_plane.block<3, 1>(0, 0) = R.col(0);
+  from_plane.block<3, 1>(0, 1) = R.col(1);
+  from_plane.block<3, 1>(3, 2) = ray / ray.dot(R.col(2));
+  Eigen::Matrix<double, 6, 3> from_outline = Eigen::Matrix<double, 6, 3>::Zero();
+  from_outline.block<3, 1>(3, 0) = R.col(0);
+  from_outline.block<3, 1>(3, 1) = R.col(1);
+  from_outline.block<3, 1>(0, 2) = R.col(2);
+  return from_plane * plane * from_plane.transpose() +
+         from_outline * outline * from_outline.transpose();
+}
+
+LidarBoard Describe(const Measurement& m,
+                    const std::array<double, 4>& edge_lengths_m,
+                    const PointCloud& cloud_lidar_m,
+                    const BoardSpec& board) {
+  const Eigen::Isometry3d T_lidar_board = TransformOf(m.frame, m.outline.pose);
+  LidarBoard found;
+  found.pose = PoseFromTransform(T_lidar_board, board);
+  found.pose.covariance = CovarianceOf(T_lidar_board, m, cloud_lidar_m);
+  found.edge_lengths_m = edge_lengths_m;
+  found.log_likelihood = m.outline.log_likelihood - LogLikelihoodOfChance(m.view.Outline());
+  double sum_squares_m2 = 0.0;
+  PointCloud& points = found.points_lidar_m;
+  points.has_intensity = cloud_lidar_m.has_intensity;
+  points.has_ring = cloud_lidar_m.has_ring;
+  points.has_time = cloud_lidar_m.has_time;
+  for (const std::size_t i : m.board_hits) {
+    const double distance_m = m.frame.plane.DistanceM(m.view.Beam(i).PositionM());
+    sum_squares_m2 += distance_m * distance_m;
+    points.points.push_back(cloud_lidar_m.points[m.view.Beam(i).point]);
+  }
+  found.plane_rms_m = std::sqrt(sum_squares_m2 / static_cast<double>(m.board_hits.size()));
+  const std::vector<std::uint16_t> rings = RingsOf(m, cloud_lidar_m);
+  found.num_beams = static_cast<int>(std::set<std::uint16_t>(rings.begin(), rings.end()).size());
+  return found;
+}
+
+bool AreLengthsNear(const std::array<double, 4>& measured_m, const std::array<double, 4>& true_m) {
+  constexpr double kMaxErrorM = 0.15;  // three times what four scan lines leave open
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!(std::abs(measured_m[i] - true_m[i]) <= kMaxErrorM)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Expected<LidarBoard, LidarBoardMiss> MeasureBoard(const PlanarPatch& patch,
+                                                  const std::vector<LidarBeam>& beams,
+                                                  const PointCloud& cloud_lidar_m,
+                                                  const BoardSpec& board) {
+  constexpr double kRoughly = 2.0;
+  constexpr double kMinCovered = 0.8;
+  Measurement m = Begin(patch, beams, board);
+  if (!Compare(m.view.Outline(), m.model, m.outline.pose).IsBoardLike(kRoughly)) {
+    return LidarBoardMiss::kSizeMismatch;
+  }
+  if (!Refine(&m)) return LidarBoardMiss::kNoPlane;
+  const Agreement agreement = Compare(m.view.Outline(), m.model, m.outline.pose);
+  if (!agreement.IsBoardLike()) return LidarBoardMiss::kSizeMismatch;
+  const std::array<OutlineEdge, 4> edges = MeasureEdges(m.view.Outline(), m.model, m.outline.pose);
+  const bool is_closed = std::all_of(edges.begin(), edges.end(), IsSeen);
+  if (!is_closed || agreement.covered < kMinCovered) return LidarBoardMiss::kOutlineOpen;
+  const std::array<double, 4> lengths_m = EdgeLengthsM(edges, m.model);
+  if (!AreLengthsNear(lengths_m, board.EdgeLengthsM())) return LidarBoardMiss::kSizeMismatch;
+  return Describe(m, lengths_m, cloud_lidar_m, board);
+}
+
+}  // namespace voqcal

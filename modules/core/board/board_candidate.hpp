@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "core/board/board_sample.hpp"
+#include "core/board/board_spec.hpp"
+#include "core/board/lidar_beams.hpp"
+#include "core/board/lidar_board.hpp"
+#include "core/board/planar_patches.hpp"
+#include "core/expected.hpp"
+#include "core/lidar/point_cloud.hpp"
+
+namespace voqcal {
+
+/// Measures the board at one planar patch, or says why the patch is not the board: kNoPlane,
+/// kSizeMismatch or kOutlineOpen.
+///
+/// @param beams  All returns of the sweep, also those behind the patch: they show where it ends.
+Expected<LidarBoard, LidarBoardMiss> MeasureBoard(const PlanarPatch& patch,
+                                                  const std::vector<LidarBeam>& beams,
+                                                  const PointCloud& cloud_lidar_m,
+                                                  const BoardSpec& board);
+
+}  // namespace voqcal

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/board/outline_edges.hpp"
+#include "core/board/outline_fit.hpp"
+
+namespace voqcal {
+
+/// How well a rectangle explains the beams around it.
+struct Agreement {
+  double hits_inside = 0.0;   ///< Share of hits among the beams well inside...
+  double hits_outside = 0.0;  ///< ...and among those in a border around it.
+  double covered = 0.0;       ///< Share of the rectangle's 4 x 4 fields with a hit.
+
+  /// Nearly all hits inside, nearly all misses outside. `slack` above 1 loosens it for a rough fit.
+  bool IsBoardLike(double slack = 1.0) const;
+};
+
+Agreement Compare(const std::vector<OutlineBeam>& beams,
+                  const OutlineModel& model,
+                  const RectanglePose& pose);
+
+/// An edge is seen if beams miss beyond it, or if at least the hits come up to it.
+bool IsSeen(const OutlineEdge& edge);
+
+/// The log-likelihood of hits and misses strewn at random: what a rectangle has to beat.
+double LogLikelihoodOfChance(const std::vector<OutlineBeam>& beams);
+
+}  // namespace voqcal

@@ -1,0 +1,139 @@
+#include "core/board/outline_edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace voqcal {
+namespace {
+
+/// A beam near an edge: how far along it (from its middle, counter-clockwise) and how far outside.
+struct NearBeam {
+  double along_m = 0.0;
+  double outside_m = 0.0;
+  bool is_hit = false;
+};
+
+/// Outward direction and half length of edge `i`, in the rectangle's axes.
+struct Side {
+  Eigen::Vector2d outward = Eigen::Vector2d::Zero();
+  Eigen::Vector2d along = Eigen::Vector2d::Zero();
+  double half_length_m = 0.0;
+  double half_depth_m = 0.0;  ///< From the rectangle's centre to the edge.
+};
+
+std::array<Side, 4> Sides(const OutlineModel& model) {
+  const double x = model.width_m / 2;
+  const double y = model.height_m / 2;
+  return {Side{{0, -1}, {1, 0}, x, y},
+          Side{{1, 0}, {0, 1}, y, x},
+          Side{{0, 1}, {-1, 0}, x, y},
+          Side{{-1, 0}, {0, -1}, y, x}};
+}
+
+std::vector<NearBeam> BeamsNear(const std::vector<OutlineBeam>& beams,
+                                const RectanglePose& pose,
+                                const Side& side,
+                                double window_m,
+                                double corner_m) {
+  std::vector<NearBeam> near;
+  for (const OutlineBeam& beam : beams) {
+    const Eigen::Vector2d q_m = pose.ToRectangle(beam.position_m);
+    const double outside_m = side.outward.dot(q_m) - side.half_depth_m;
+    const double along_m = side.along.dot(q_m);
+    if (std::abs(outside_m) > window_m || std::abs(along_m) > side.half_length_m - corner_m)
+      continue;
+    near.push_back({along_m, outside_m, beam.is_hit});
+  }
+  return near;
+}
+
+/// Fisher scoring of [offset; slope] in p = L((offset + slope * along - outside) / blur).
+Eigen::Vector2d FitLine(const std::vector<NearBeam>& near,
+                        const OutlineModel& model,
+                        double window_m) {
+  constexpr int kNumIterations = 20;
+  const double keep = 1.0 - model.outlier_share;
+  Eigen::Vector2d line = Eigen::Vector2d::Zero();
+  for (int i = 0; i < kNumIterations; ++i) {
+    // Weak pull (window: 1 sigma) so that an edge seen at one place only keeps the rectangle's
+    // slope.
+    Eigen::Matrix2d H = Eigen::Vector2d(1 / (window_m * window_m), 1 / 0.01).asDiagonal();
+    Eigen::Vector2d g = -H * line;
+    for (const NearBeam& beam : near) {
+      const double t = (line[0] + line[1] * beam.along_m - beam.outside_m) / model.blur_m;
+      const double L = 1.0 / (1.0 + std::exp(-t));
+      const double p_hit = model.outlier_share / 2 + keep * L;
+      const Eigen::Vector2d J =
+          keep * L * (1 - L) / model.blur_m * Eigen::Vector2d(1, beam.along_m);
+      g += J / (beam.is_hit ? p_hit : p_hit - 1.0);
+      H += J * J.transpose() / (p_hit * (1.0 - p_hit));
+    }
+    Eigen::Vector2d step = H.ldlt().solve(g);
+    step[0] = std::clamp(step[0], -window_m / 4, window_m / 4);
+    step[1] = std::clamp(step[1], -0.1, 0.1);
+    line += step;
+    if (step.norm() < 1e-7) break;
+  }
+  return line;
+}
+
+OutlineEdge MeasureEdge(const std::vector<NearBeam>& near,
+                        const OutlineModel& model,
+                        double window_m) {
+  OutlineEdge edge;
+  edge.reach_m = -window_m;
+  for (const NearBeam& beam : near) {
+    (beam.is_hit ? edge.num_hits : edge.num_misses) += 1;
+    if (beam.is_hit) edge.reach_m = std::max(edge.reach_m, beam.outside_m);
+  }
+  if (edge.num_misses == 0) {  // nothing behind it to show its end: the hits' reach is all there is
+    edge.offset_m = edge.reach_m;
+    return edge;
+  }
+  const Eigen::Vector2d line = FitLine(near, model, window_m);
+  edge.offset_m = line[0];
+  edge.slope = line[1];
+  return edge;
+}
+
+}  // namespace
+
+std::array<OutlineEdge, 4> MeasureEdges(const std::vector<OutlineBeam>& beams,
+                                        const OutlineModel& model,
+                                        const RectanglePose& pose) {
+  const double window_m = std::min(model.width_m, model.height_m) / 4;
+  // Near a corner the neighbouring edge decides too.
+  const double corner_m = std::max(3 * model.blur_m, window_m / 4);
+  const std::array<Side, 4> sides = Sides(model);
+  std::array<OutlineEdge, 4> edges;
+  for (std::size_t i = 0; i < 4; ++i) {
+    edges[i] = MeasureEdge(BeamsNear(beams, pose, sides[i], window_m, corner_m), model, window_m);
+  }
+  return edges;
+}
+
+std::array<double, 4> EdgeLengthsM(const std::array<OutlineEdge, 4>& edges,
+                                   const OutlineModel& model) {
+  const std::array<Side, 4> sides = Sides(model);
+  std::array<Eigen::Vector2d, 4> corners_m;  // corner i is where edges i - 1 and i meet
+  for (std::size_t i = 0; i < 4; ++i) {
+    Eigen::Matrix2d A;
+    Eigen::Vector2d b;
+    for (const int row : {0, 1}) {
+      const std::size_t k = row == 0 ? (i + 3) % 4 : i;
+      A.row(row) = (sides[k].outward - edges[k].slope * sides[k].along).transpose();
+      b[row] = sides[k].half_depth_m + edges[k].offset_m;
+    }
+    corners_m[i] = A.partialPivLu().solve(b);
+  }
+  std::array<double, 4> lengths_m{};
+  for (std::size_t i = 0; i < 4; ++i) lengths_m[i] = (corners_m[(i + 1) % 4] - corners_m[i]).norm();
+  return lengths_m;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/board/plane_fit.hpp"
+
+namespace voqcal {
+
+/// What counts as a patch.
+struct PatchSearchOptions {
+  double voxel_m = 0.15;       ///< Side of the cells that a patch is grown from.
+  double band_m = 0.045;       ///< A cell belongs to a patch if its mean is this near its plane.
+  double min_spread_m = 0.08;  ///< Least spread (1 sigma) along the patch's shorter axis.
+  double max_radius_m = 1.0;   ///< Patches that reach farther from their middle are walls or floor.
+  int min_points = 30;
+};
+
+/// A connected planar piece of the scene.
+struct PlanarPatch {
+  PlaneFit plane;
+  Eigen::Vector3d middle_m =
+      Eigen::Vector3d::Zero();  ///< Mean of its cells: free of point density.
+  int num_points = 0;
+};
+
+/// The planar patches of about a board's size, those with most points first. The points' order
+/// matters by rounding only.
+std::vector<PlanarPatch> FindPlanarPatches(const std::vector<Eigen::Vector3d>& points_m,
+                                           const PatchSearchOptions& options);
+
+}  // namespace voqcal

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace voqcal {
+
+/// Count, sum and outer product of points: enough to fit a plane, and they add up.
+struct PointMoments {
+  double num = 0.0;
+  Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d outer_m2 = Eigen::Matrix3d::Zero();
+
+  void Add(const Eigen::Vector3d& point_m, double weight = 1.0);
+  void Add(const PointMoments& other);
+  Eigen::Vector3d MeanM() const { return sum_m / num; }
+};
+
+/// A plane and how the points lie in it: principal axes with the spread (1 sigma) along each.
+struct PlaneFit {
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();   ///< The points' (weighted) mean.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< Towards the origin.
+  Eigen::Vector3d spread_m = Eigen::Vector3d::Zero();  ///< Along the normal, then growing.
+
+  double DistanceM(const Eigen::Vector3d& p_m) const { return normal.dot(p_m - point_m); }
+};
+
+/// The plane of least squared distances. Fewer than three points give a meaningless normal.
+PlaneFit FitPlane(const PointMoments& moments);
+
+/// FitPlane by iterated reweighting with Cauchy weights 1 / (1 + (distance / scale_m)^2), from
+/// `start`: mixed pixels and whatever touches the board hardly count.
+PlaneFit FitPlaneRobustly(const std::vector<Eigen::Vector3d>& points_m,
+                          const PlaneFit& start,
+                          double scale_m);
+
+/// Covariance of a plane: tilts about the orthonormal in-plane axes e1 and e2 (rad, right-handed
+/// with e1 x e2 = normal), then the offset along the normal (m) at `centre_m`.
+///
+/// Points of one scan line err together (each laser has its own offset), so their errors are summed
+/// by line before they are squared: the cluster-robust ("sandwich") covariance of Liang and Zeger
+/// 1986, Biometrika 73(1), on top of the independent noise.
+///
+/// @param rings  Scan line of each point, or empty: then only independent noise counts.
+Eigen::Matrix3d PlaneCovariance(const std::vector<Eigen::Vector3d>& points_m,
+                                const std::vector<std::uint16_t>& rings,
+                                const PlaneFit& plane,
+                                const Eigen::Vector3d& centre_m,
+                                const Eigen::Vector3d& e1,
+                                const Eigen::Vector3d& e2);
+
+}  // namespace voqcal

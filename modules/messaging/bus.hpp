@@ -1,10 +1,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,21 +18,27 @@ inline constexpr char kDefaultLcmUrl[] = "udpm://239.255.76.67:7667?ttl=0&recv_b
 /// How many undelivered messages of a channel wait, at most.
 enum class Queue {
   kLatest,  ///< One: a slow reader skips to the newest (state that travels whole).
-  kEvery,   ///< Hundreds: nothing is skipped unless the reader falls far behind (sensor data, commands).
+  kEvery,   ///< Hundreds: nothing is skipped unless the reader falls far behind (sensor data,
+            ///< commands).
 };
 
 /// What a bus saw of one subscribed channel.
 struct ChannelCounts {
   std::int64_t num_received = 0;
-  std::int64_t num_lost = 0;       ///< Gaps in the sequence numbers (messages that carry one).
-  std::int64_t num_malformed = 0;  ///< Could not be decoded; reported once a channel, counted always.
+  /// Gaps in the sequence numbers (SequenceOf). Not counted with Queue::kLatest, which skips by
+  /// design.
+  std::int64_t num_lost = 0;
+  std::int64_t num_malformed =
+      0;  ///< Could not be decoded; reported once a channel, counted always.
 };
 
 /// The one way to LCM. Hides its traps: buffer sizes, EINTR, exceptions in handlers, queue depths,
-/// malformed messages, failed publishes.
+/// malformed messages, failed publishes. For one thread.
 class Bus {
  public:
-  /// @param url  an LCM URL; "memq://" for one process alone.
+  /// Warns if large messages cannot arrive by this URL (ReceiveBufferWarning).
+  ///
+  /// @param url  an LCM URL; "memq://" for one process alone; empty for kDefaultLcmUrl.
   /// @throws std::runtime_error if LCM cannot be created, with the likely remedy.
   explicit Bus(const std::string& url);
   ~Bus();
@@ -38,12 +46,17 @@ class Bus {
   Bus& operator=(const Bus&) = delete;
 
   /// Calls `handler` with each message of `channel`, from HandleOnce. Message is an lcm-gen type.
+  /// A channel may have several handlers; its counts are kept by the first.
+  ///
+  /// @throws std::invalid_argument if LCM cannot carry `channel` (empty, or over 63 characters).
+  /// @throws std::logic_error if the channel is already subscribed with another type.
   template <typename Message>
   void Subscribe(const std::string& channel,
                  Queue queue,
                  std::function<void(const Message&)> handler);
 
-  /// Counts a failure instead of throwing: the next second's message repeats all state.
+  /// Counts a failure (and warns of the first) instead of throwing: the next second's message
+  /// repeats all state.
   template <typename Message>
   void Publish(const std::string& channel, const Message& message);
 
@@ -52,7 +65,8 @@ class Bus {
 
   /// Waits up to `timeout` for a message and handles it.
   /// @return true if one was handled; false on a time-out or a signal.
-  /// @throws what a handler threw, and std::runtime_error if LCM fails.
+  /// @throws what a handler threw (the first, if several of one message did), and
+  ///     std::runtime_error if LCM fails.
   bool HandleOnce(std::chrono::milliseconds timeout);
 
   const std::map<std::string, ChannelCounts>& channels() const;
@@ -61,7 +75,40 @@ class Bus {
 
  private:
   struct Impl;
+  struct Subscription;
+
+  /// What one delivery was, as the typed part of a subscription reports it.
+  struct Delivery {
+    std::string problem;                   ///< Why it could not be decoded; empty if it could.
+    std::optional<std::int64_t> sequence;  ///< SequenceOf the message.
+    std::function<void()> handle;          ///< Hands the decoded message to the subscriber.
+  };
+  using Decoder = std::function<Delivery(const void* bytes, std::size_t num_bytes)>;
+
+  void SubscribeDecoder(const std::string& channel,
+                        Queue queue,
+                        std::int64_t fingerprint,
+                        Decoder decoder);
+  void CountPublishFailure(const std::string& channel, const std::string& cause);
+
   std::unique_ptr<Impl> impl_;
 };
 
+/// Decodes all of `bytes`. lcm-gen's decoders answer a broken message with -1 or an exception, and
+/// leave trailing bytes unread; here all of these are one text.
+/// @return why it failed; empty if `message` holds the whole message.
+template <typename Message>
+std::string DecodeMessage(const void* bytes, std::size_t num_bytes, Message* message);
+
+/// Why large messages will be lost with this URL, and the remedy; nothing if they will not.
+///
+/// LCM loses them without a trace: the kernel silently caps recv_buf_size at net.core.rmem_max, and
+/// a datagram that finds the buffer full is gone.
+///
+/// @param rmem_max  bytes, of /proc/sys/net/core/rmem_max; nothing if it cannot be read.
+std::optional<std::string> ReceiveBufferWarning(const std::string& url,
+                                                std::optional<std::int64_t> rmem_max);
+
 }  // namespace voqcal
+
+#include "messaging/bus_impl.hpp"  // the templates

@@ -28,7 +28,8 @@ class Module {
   /// True once there will never be work again (the end of a recording): Spin then returns.
   virtual bool IsDone() const { return false; }
 
-  /// Publishes the current state again. Called once a second: a lost datagram or a late start heals.
+  /// Publishes the current state again. Called once a second: a lost datagram or a late start
+  /// heals.
   virtual void Republish() {}
 
   /// One line for MODULE_STATUS: "running", "waiting for ...", "failed: ...".

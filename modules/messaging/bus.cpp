@@ -1,0 +1,242 @@
+#include "messaging/bus.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <exception>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include <lcm/lcm.h>
+#include <spdlog/spdlog.h>
+
+namespace voqcal {
+namespace {
+
+constexpr int kNumEvery = 500;
+
+/// LCM_MAX_CHANNEL_NAME_LENGTH, which lcm.h does not export.
+constexpr std::size_t kMaxChannelLength = 63;
+
+bool StartsWith(const std::string& text, const std::string& prefix) {
+  return text.compare(0, prefix.size(), prefix) == 0;
+}
+
+/// The value of recv_buf_size in a URL, 0 if it has none (the kernel's default then holds).
+std::int64_t RecvBufSize(const std::string& url) {
+  static const std::string kKey = "recv_buf_size=";
+  const std::size_t at = url.find(kKey);
+  if (at == std::string::npos) return 0;
+  return std::strtoll(url.c_str() + at + kKey.size(), nullptr, 10);
+}
+
+std::optional<std::int64_t> ReadRmemMax() {
+  std::ifstream file("/proc/sys/net/core/rmem_max");
+  std::int64_t value = 0;
+  if (file >> value) return value;
+  return std::nullopt;
+}
+
+std::string CreationProblem(const std::string& url) {
+  std::string text = "LCM cannot be opened at '" + url + "'";
+  if (StartsWith(url, "udpm://")) {
+    text +=
+        ": is there a multicast route? If not: ip link set lo up; ip link set lo multicast on; "
+        "ip route add 224.0.0.0/4 dev lo";
+  } else if (StartsWith(url, "tcpq://")) {
+    text += ": is its broker running? It is lcm.lcm.TCPService of lcm.jar";
+  } else if (StartsWith(url, "file://")) {
+    text += ": is it a readable LCM log?";
+  } else {
+    text += ": LCM knows udpm://, tcpq://, memq:// and file://";
+  }
+  return text;
+}
+
+/// LCM takes channels as regular expressions; ours are names.
+std::string EscapedForRegex(const std::string& name) {
+  std::string escaped;
+  for (const char c : name) {
+    if (std::strchr("\\^$.|?*+()[]{}", c) != nullptr) escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+/// What one channel's first subscription remembers.
+struct ChannelMemory {
+  std::int64_t fingerprint = 0;
+  std::optional<std::int64_t> last_sequence;
+  bool has_warned = false;
+};
+
+}  // namespace
+
+/// Lives as long as the bus: LCM holds its address.
+struct Bus::Subscription {
+  Impl* impl = nullptr;
+  std::string channel;
+  Queue queue = Queue::kEvery;
+  bool keeps_counts = false;
+  Decoder decoder;
+
+  static void OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void* user);
+};
+
+struct Bus::Impl {
+  lcm_t* lcm = nullptr;
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+  std::map<std::string, ChannelCounts> counts;
+  std::map<std::string, ChannelMemory> memories;
+  std::exception_ptr thrown;  ///< By a handler, while C frames were on the stack.
+  std::int64_t num_published = 0;
+  std::int64_t num_publish_failures = 0;
+
+  void Deliver(const Subscription& subscription, const void* bytes, std::size_t num_bytes);
+  void CountMalformed(const std::string& channel, const std::string& problem);
+  void CountLosses(const std::string& channel, std::int64_t sequence);
+};
+
+void Bus::Impl::Deliver(const Subscription& subscription,
+                        const void* bytes,
+                        std::size_t num_bytes) {
+  const Delivery delivery = subscription.decoder(bytes, num_bytes);
+  if (!delivery.problem.empty()) {
+    if (subscription.keeps_counts) CountMalformed(subscription.channel, delivery.problem);
+    return;
+  }
+  if (subscription.keeps_counts) {
+    ++counts[subscription.channel].num_received;
+    if (delivery.sequence && subscription.queue == Queue::kEvery) {
+      CountLosses(subscription.channel, *delivery.sequence);
+    }
+  }
+  delivery.handle();
+}
+
+void Bus::Impl::CountMalformed(const std::string& channel, const std::string& problem) {
+  ++counts[channel].num_malformed;
+  ChannelMemory& memory = memories[channel];
+  if (memory.has_warned) return;
+  memory.has_warned = true;
+  spdlog::warn("{}: malformed message skipped: {} (later ones are only counted)", channel, problem);
+}
+
+/// A number that is not above the last one is a sender that started anew (or a recording played
+/// again), or one that does not number its messages; neither is a loss.
+void Bus::Impl::CountLosses(const std::string& channel, std::int64_t sequence) {
+  std::optional<std::int64_t>& last = memories[channel].last_sequence;
+  if (last && sequence > *last) {
+    const auto gap = static_cast<std::uint64_t>(sequence) - static_cast<std::uint64_t>(*last) - 1;
+    constexpr std::uint64_t kMaxGap = std::numeric_limits<std::uint32_t>::max();
+    counts[channel].num_lost += static_cast<std::int64_t>(std::min(gap, kMaxGap));
+  }
+  last = sequence;
+}
+
+/// Runs under C frames that hold LCM's mutex: nothing may be thrown through them.
+void Bus::Subscription::OnMessage(const lcm_recv_buf_t* buffer, const char*, void* user) {
+  const auto* subscription = static_cast<const Subscription*>(user);
+  try {
+    subscription->impl->Deliver(*subscription, buffer->data, buffer->data_size);
+  } catch (...) {
+    if (!subscription->impl->thrown) subscription->impl->thrown = std::current_exception();
+  }
+}
+
+Bus::Bus(const std::string& url) : impl_(std::make_unique<Impl>()) {
+  const std::string used_url = url.empty() ? kDefaultLcmUrl : url;
+  if (const auto warning = ReceiveBufferWarning(used_url, ReadRmemMax())) spdlog::warn(*warning);
+  impl_->lcm = lcm_create(used_url.c_str());
+  if (impl_->lcm == nullptr) throw std::runtime_error(CreationProblem(used_url));
+}
+
+Bus::~Bus() { lcm_destroy(impl_->lcm); }
+
+void Bus::SubscribeDecoder(const std::string& channel,
+                           Queue queue,
+                           std::int64_t fingerprint,
+                           Decoder decoder) {
+  if (channel.empty() || channel.size() > kMaxChannelLength) {
+    throw std::invalid_argument("LCM channel '" + channel + "' must have 1 to " +
+                                std::to_string(kMaxChannelLength) + " characters");
+  }
+  const bool is_first = impl_->counts.count(channel) == 0;
+  if (is_first) impl_->memories[channel].fingerprint = fingerprint;
+  if (impl_->memories[channel].fingerprint != fingerprint) {
+    throw std::logic_error("LCM channel '" + channel + "' is already subscribed as another type");
+  }
+  impl_->counts[channel];  // shows in the status from now on
+
+  auto subscription = std::make_unique<Subscription>();
+  subscription->impl = impl_.get();
+  subscription->channel = channel;
+  subscription->queue = queue;
+  subscription->keeps_counts = is_first;
+  subscription->decoder = std::move(decoder);
+  lcm_subscription_t* handle = lcm_subscribe(
+      impl_->lcm, EscapedForRegex(channel).c_str(), &Subscription::OnMessage, subscription.get());
+  if (handle == nullptr) {
+    throw std::runtime_error("LCM cannot subscribe to '" + channel +
+                             "': is multicast received on this network?");
+  }
+  lcm_subscription_set_queue_capacity(handle, queue == Queue::kLatest ? 1 : kNumEvery);
+  impl_->subscriptions.push_back(std::move(subscription));
+}
+
+void Bus::PublishBytes(const std::string& channel, const void* bytes, std::size_t num_bytes) {
+  if (num_bytes > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    CountPublishFailure(channel, "too large for LCM");
+    return;
+  }
+  const int status =
+      lcm_publish(impl_->lcm, channel.c_str(), bytes, static_cast<unsigned int>(num_bytes));
+  if (status != 0) {
+    CountPublishFailure(channel, "LCM refused it");
+    return;
+  }
+  ++impl_->num_published;
+}
+
+void Bus::CountPublishFailure(const std::string& channel, const std::string& cause) {
+  if (impl_->num_publish_failures++ > 0) return;
+  spdlog::warn("{}: message not published: {} (later failures are only counted)", channel, cause);
+}
+
+bool Bus::HandleOnce(std::chrono::milliseconds timeout) {
+  using Rep = std::chrono::milliseconds::rep;
+  const auto timeout_ms =
+      static_cast<int>(std::clamp<Rep>(timeout.count(), 0, std::numeric_limits<int>::max()));
+  errno = 0;
+  const int status = lcm_handle_timeout(impl_->lcm, timeout_ms);
+  const int cause = errno;
+  if (impl_->thrown) std::rethrow_exception(std::exchange(impl_->thrown, nullptr));
+  if (status < 0 && cause != EINTR) {
+    throw std::runtime_error(std::string("LCM failed to handle messages: ") +
+                             (cause != 0 ? std::strerror(cause) : "connection lost"));
+  }
+  return status > 0;
+}
+
+const std::map<std::string, ChannelCounts>& Bus::channels() const { return impl_->counts; }
+std::int64_t Bus::num_published() const { return impl_->num_published; }
+std::int64_t Bus::num_publish_failures() const { return impl_->num_publish_failures; }
+
+std::optional<std::string> ReceiveBufferWarning(const std::string& url,
+                                                std::optional<std::int64_t> rmem_max) {
+  if (!StartsWith(url, "udpm://")) return std::nullopt;
+  const std::int64_t wanted = RecvBufSize(url);
+  if (wanted <= 0) {
+    return "LCM URL '" + url +
+           "' has no recv_buf_size: images and sweeps will be lost; add recv_buf_size=4194304";
+  }
+  if (!rmem_max || *rmem_max >= wanted) return std::nullopt;
+  return "net.core.rmem_max is " + std::to_string(*rmem_max) +
+         " bytes, recv_buf_size of the LCM URL " + std::to_string(wanted) +
+         ": images and sweeps will be lost; run: sudo sysctl -w net.core.rmem_max=" +
+         std::to_string(wanted);
+}
+
+}  // namespace voqcal

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "core/camera/camera_model.hpp"
+#include "voqcal/camera_info_t.hpp"
+#include "voqcal/image_t.hpp"
+
+namespace voqcal {
+
+/// image_t::pixelformat: FOURCC codes, bot_core's and (PNG) one more.
+enum PixelFormat : std::int32_t {
+  kPixelGray = 1497715271,
+  kPixelRgb = 859981650,
+  kPixelBgr = 861030210,
+  kPixelMjpeg = 1196444237,
+  kPixelPng = 541544016,
+};
+
+/// @param image  8-bit, 1 channel (sent as GRAY) or 3 (as BGR). Exact.
+/// @param seq    counts up by one with each image; carried as metadata, for SequenceOf.
+/// @throws std::invalid_argument for another type or an empty image.
+image_t ToMessage(const cv::Mat& image, std::int64_t utime, std::int64_t seq);
+
+/// A message of a whole JPEG or PNG file's bytes as they are; only the size is read from them.
+/// @throws std::runtime_error if they are neither.
+image_t EncodedToMessage(std::vector<std::uint8_t> bytes, std::int64_t utime, std::int64_t seq);
+
+/// The image, 8-bit, GRAY or BGR, decoded if need be, without turning it by its EXIF orientation.
+///
+/// @throws std::runtime_error with the cause: sizes that contradict each other, an unknown
+///     pixelformat, data that cannot be decoded, or a JPEG without its end. (A JPEG damaged in its
+///     middle decodes to an image with wrong parts: the format has no checksum.)
+cv::Mat FromMessage(const image_t& message);
+
+camera_info_t ToMessage(const CameraModel& camera, std::int64_t utime, std::int64_t seq);
+
+/// @throws std::runtime_error for an unknown lens model or one with Problems().
+CameraModel FromMessage(const camera_info_t& message);
+
+}  // namespace voqcal

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/assessment/scores.hpp"
+#include "core/estimation/average.hpp"
+#include "core/estimation/refine.hpp"
+#include "core/estimation/set_extrinsic.hpp"
+#include "core/selection/voq.hpp"
+#include "voqcal/extrinsic_averaged_t.hpp"
+#include "voqcal/extrinsic_refined_t.hpp"
+#include "voqcal/rigid_transform_t.hpp"
+#include "voqcal/scene_score_t.hpp"
+#include "voqcal/set_extrinsic_t.hpp"
+#include "voqcal/transform_t.hpp"
+#include "voqcal/voq_set_t.hpp"
+
+namespace voqcal {
+
+// All exact but for a rotation, which is a matrix here and a quaternion there: equal to rounding
+// (about 1e-16), and the same bits on each run.
+
+/// The quaternion has unit length and w >= 0.
+transform_t ToMessage(const Eigen::Isometry3d& T_target_source);
+/// @throws std::runtime_error if the quaternion is not of unit length or a number is not finite.
+Eigen::Isometry3d FromMessage(const transform_t& message);
+
+/// For other LCM systems: bot_core's order w x y z.
+rigid_transform_t RigidTransformMessage(const Eigen::Isometry3d& T_target_source,
+                                        std::int64_t utime);
+
+/// @param sample_ids  id of each sample that the set's indices refer to.
+voq_set_t ToMessage(const VoqSet& set, const std::vector<std::int64_t>& sample_ids);
+/// @throws std::runtime_error if the set has a sample that `sample_ids` has not.
+VoqSet FromMessage(const voq_set_t& message, const std::vector<std::int64_t>& sample_ids);
+
+set_extrinsic_t ToMessage(const SetExtrinsic& extrinsic, const voq_set_t& set, bool is_kept);
+/// @throws std::runtime_error for an unknown status or a broken transform.
+SetExtrinsic FromMessage(const set_extrinsic_t& message);
+
+/// The average and its spread with each set's result; `sets` and `extrinsics` go together.
+/// utime, revision, problem and inconsistent samples are left to the caller.
+extrinsic_averaged_t ToMessage(const AveragedExtrinsic& average,
+                               const std::vector<voq_set_t>& sets,
+                               const std::vector<SetExtrinsic>& extrinsics);
+AveragedExtrinsic FromMessage(const extrinsic_averaged_t& message);
+
+/// utime, revision and problem are left to the caller.
+extrinsic_refined_t ToMessage(const RefinedExtrinsic& refined,
+                              const std::vector<std::int64_t>& sample_ids);
+/// Its status is kConverged if the message states no problem, else kNotConverged.
+RefinedExtrinsic FromMessage(const extrinsic_refined_t& message);
+
+spread_t ToMessage(const Spread& spread);
+Spread FromMessage(const spread_t& message);
+
+/// Without the single poses, which scene_score_t does not carry.
+scene_score_t ToMessage(const SceneScore& score);
+SceneScore FromMessage(const scene_score_t& message);
+
+}  // namespace voqcal

@@ -1,0 +1,177 @@
+#include "messaging/log.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <spdlog/spdlog.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace voqcal {
+namespace {
+
+// An event, all big-endian: sync word u32, event number i64, time i64, channel length u32, data
+// length u32, channel, data. (LCM 1.3.1, lcm/eventlog.c.)
+constexpr std::array<std::uint8_t, 4> kSyncWord = {0xED, 0xA1, 0xDA, 0x01};
+constexpr std::size_t kHeaderBytes = 28;
+
+/// LCM's channels have at most 63; a longer one is damage.
+constexpr std::uint64_t kMaxChannelBytes = 63;
+
+using Header = std::array<std::uint8_t, kHeaderBytes>;
+
+std::uint64_t ReadBigEndian(const std::uint8_t* bytes, int num_bytes) {
+  std::uint64_t value = 0;
+  for (int i = 0; i < num_bytes; ++i) value = (value << 8) | bytes[i];
+  return value;
+}
+
+void AppendBigEndian(std::uint64_t value, int num_bytes, std::vector<std::uint8_t>* bytes) {
+  for (int shift = 8 * (num_bytes - 1); shift >= 0; shift -= 8) {
+    bytes->push_back(static_cast<std::uint8_t>(value >> shift));
+  }
+}
+
+std::vector<std::uint8_t> Encode(const LogEvent& event) {
+  std::vector<std::uint8_t> bytes(kSyncWord.begin(), kSyncWord.end());
+  bytes.reserve(kHeaderBytes + event.channel.size() + event.bytes.size());
+  AppendBigEndian(static_cast<std::uint64_t>(event.number), 8, &bytes);
+  AppendBigEndian(static_cast<std::uint64_t>(event.utime), 8, &bytes);
+  AppendBigEndian(event.channel.size(), 4, &bytes);
+  AppendBigEndian(event.bytes.size(), 4, &bytes);
+  bytes.insert(bytes.end(), event.channel.begin(), event.channel.end());
+  bytes.insert(bytes.end(), event.bytes.begin(), event.bytes.end());
+  return bytes;
+}
+
+std::string At(const std::filesystem::path& path, std::int64_t offset) {
+  return path.string() + ": byte " + std::to_string(offset) + ": ";
+}
+
+/// Makes a new file's name as durable as its contents.
+void SyncFolderOf(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
+}
+
+}  // namespace
+
+LogReader::LogReader(const std::filesystem::path& path) : path_(path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw std::runtime_error(path.string() + ": no such file");
+  if (!std::filesystem::is_regular_file(status)) {
+    throw std::runtime_error(path.string() + ": not a file");
+  }
+  num_bytes_ = static_cast<std::int64_t>(std::filesystem::file_size(path));
+  file_.open(path, std::ios::binary);
+  if (!file_) throw std::runtime_error(path.string() + ": cannot be read");
+}
+
+void LogReader::FailTruncated() const {
+  throw TruncatedLogError(
+      At(path_, offset_) + "the LCM log is cut off within the event that begins here", offset_);
+}
+
+std::optional<LogEvent> LogReader::Next() {
+  if (offset_ == num_bytes_) return std::nullopt;
+  const std::int64_t num_left = num_bytes_ - offset_;
+  Header header{};
+  file_.read(reinterpret_cast<char*>(header.data()), kHeaderBytes);
+  const auto num_read = static_cast<std::size_t>(file_.gcount());
+  // A cut may fall within the sync word: what there is of it must match.
+  if (!std::equal(kSyncWord.begin(),
+                  kSyncWord.begin() + std::min(num_read, kSyncWord.size()),
+                  header.begin())) {
+    throw std::runtime_error(At(path_, offset_) +
+                             "no LCM log event begins here (foreign or damaged file)");
+  }
+  if (num_read < kHeaderBytes) FailTruncated();
+
+  LogEvent event;
+  event.number = static_cast<std::int64_t>(ReadBigEndian(&header[4], 8));
+  event.utime = static_cast<std::int64_t>(ReadBigEndian(&header[12], 8));
+  const std::uint64_t channel_bytes = ReadBigEndian(&header[20], 4);
+  const std::uint64_t data_bytes = ReadBigEndian(&header[24], 4);
+  if (channel_bytes == 0 || channel_bytes > kMaxChannelBytes) {
+    throw std::runtime_error(At(path_, offset_) + "the event's channel name has " +
+                             std::to_string(channel_bytes) + " bytes (1 to 63 are possible)");
+  }
+  const auto event_bytes = static_cast<std::int64_t>(kHeaderBytes + channel_bytes + data_bytes);
+  if (event_bytes > num_left) FailTruncated();
+  event.channel.resize(channel_bytes);
+  event.bytes.resize(data_bytes);
+  file_.read(event.channel.data(), static_cast<std::streamsize>(channel_bytes));
+  file_.read(reinterpret_cast<char*>(event.bytes.data()), static_cast<std::streamsize>(data_bytes));
+  if (!file_) FailTruncated();
+  offset_ += event_bytes;
+  return event;
+}
+
+LogWriter::LogWriter(const std::filesystem::path& path) : path_(path) {
+  descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) Fail("open");
+  try {
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      throw std::runtime_error(path.string() + ": is being written by another process");
+    }
+    CutHalfWrittenEvent();
+  } catch (...) {
+    close(descriptor_);
+    throw;
+  }
+  SyncFolderOf(path);
+}
+
+LogWriter::~LogWriter() { close(descriptor_); }
+
+void LogWriter::CutHalfWrittenEvent() {
+  LogReader reader(path_);
+  try {
+    while (reader.Next()) {
+    }
+  } catch (const TruncatedLogError& error) {
+    spdlog::warn("{} (cut off there, to go on)", error.what());
+    if (ftruncate(descriptor_, error.offset()) != 0) Fail("cut");
+  }
+  num_bytes_ = reader.offset();
+}
+
+void LogWriter::Write(const LogEvent& event) {
+  if (event.channel.empty() || event.channel.size() > kMaxChannelBytes) {
+    throw std::invalid_argument("LCM log: channel '" + event.channel +
+                                "' must have 1 to 63 characters");
+  }
+  const std::vector<std::uint8_t> bytes = Encode(event);
+  std::size_t num_written = 0;
+  while (num_written < bytes.size()) {
+    const ssize_t num_now =
+        write(descriptor_, bytes.data() + num_written, bytes.size() - num_written);
+    if (num_now < 0 && errno == EINTR) continue;
+    if (num_now <= 0) {
+      const int cause = errno;
+      const bool is_taken_back = ftruncate(descriptor_, num_bytes_) == 0;
+      errno = cause;
+      Fail(is_taken_back ? "write" : "write (and take back)");
+    }
+    num_written += static_cast<std::size_t>(num_now);
+  }
+  num_bytes_ += static_cast<std::int64_t>(bytes.size());
+}
+
+void LogWriter::Flush() {
+  if (fsync(descriptor_) != 0) Fail("sync");
+}
+
+void LogWriter::Fail(const std::string& action) const {
+  throw std::runtime_error(path_.string() + ": cannot " + action + ": " + std::strerror(errno));
+}
+
+}  // namespace voqcal

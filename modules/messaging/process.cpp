@@ -1,0 +1,78 @@
+#include "messaging/process.hpp"
+
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace voqcal {
+namespace {
+
+constexpr int kExitUsage = 2;
+
+void AddFlags(CLI::App* app, ProcessArgs* args) {
+  app->add_option("--rig", args->rig_path, "Rig file (YAML): board, sensors, channels, options")
+      ->required()
+      ->type_name("FILE");
+  app->add_option("--lcm-url", args->lcm_url, "LCM network, instead of the rig file's")
+      ->type_name("URL");
+  app->add_option("--session", args->session_dir, "Session folder, for modules that keep files")
+      ->type_name("DIR");
+  app->add_flag("--verbose", args->is_verbose, "Log more");
+  app->set_version_flag("--version", VOQCAL_VERSION);
+}
+
+}  // namespace
+
+int RunProcess(int argc,
+               const char* const* argv,
+               const ProcessInfo& info,
+               const std::function<void(const ProcessArgs&)>& body) {
+  CLI::App app(info.description, info.name);
+  ProcessArgs args;
+  AddFlags(&app, &args);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << info.name << ": " << OneLine(error.what()) << " (see --help)\n";
+    return kExitUsage;
+  }
+  try {
+    LogToStderr(info.name, args.is_verbose);
+    body(args);
+    return EXIT_SUCCESS;
+  } catch (const std::exception& error) {
+    std::cerr << info.name << ": " << OneLine(error.what()) << '\n';
+    return EXIT_FAILURE;
+  }
+}
+
+void LogToStderr(const std::string& program, bool is_verbose) {
+  auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+  auto logger = std::make_shared<spdlog::logger>(program, std::move(sink));
+  logger->set_pattern("[%H:%M:%S.%e] %n: %^%l%$: %v");
+  logger->set_level(is_verbose ? spdlog::level::debug : spdlog::level::info);
+  spdlog::set_default_logger(std::move(logger));
+}
+
+std::string OneLine(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const bool is_break = c == '\n' || c == '\r';
+    if (!is_break) {
+      line += c;
+    } else if (!line.empty() && line.back() != ' ') {
+      line += ' ';
+    }
+  }
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  return line;
+}
+
+}  // namespace voqcal

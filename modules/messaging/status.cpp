@@ -1,0 +1,60 @@
+#include "messaging/status.hpp"
+
+#include <utility>
+
+namespace voqcal {
+namespace {
+
+/// The one wall clock of messaging: a heartbeat says when it was sent, nothing is computed from it.
+std::int64_t WallClockUs() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+StatusPublisher::StatusPublisher(Bus& bus, std::string channel)
+    : bus_(bus), channel_(std::move(channel)) {}
+
+void StatusPublisher::Publish(const Module& module,
+                              const std::string& state,
+                              Clock::time_point now) {
+  module_status_t message{};
+  message.utime = WallClockUs();
+  message.seq = ++num_sent_;
+  message.module = module.Name();
+  message.state = state;
+  for (const auto& [name, counts] : bus_.channels()) {
+    channel_status_t channel{};
+    channel.channel = name;
+    channel.num_received = counts.num_received;
+    channel.num_lost = counts.num_lost;
+    channel.num_malformed = counts.num_malformed;
+    channel.rate_hz = RateHz(name, counts.num_received, now);
+    message.channels.push_back(channel);
+  }
+  message.num_channels = static_cast<std::int32_t>(message.channels.size());
+  message.num_published = bus_.num_published();
+  message.num_publish_failures = bus_.num_publish_failures();
+  for (const auto& [name, count] : module.counters()) {
+    counter_t counter{};
+    counter.name = name;
+    counter.count = count;
+    message.counters.push_back(counter);
+  }
+  message.num_counters = static_cast<std::int32_t>(message.counters.size());
+  last_ = now;
+  bus_.Publish(channel_, message);
+}
+
+double StatusPublisher::RateHz(const std::string& channel,
+                               std::int64_t num_received,
+                               Clock::time_point now) {
+  const std::int64_t num_new = num_received - std::exchange(num_received_[channel], num_received);
+  const double elapsed_s = std::chrono::duration<double>(now - last_).count();
+  if (num_sent_ == 1 || elapsed_s <= 0.0) return 0.0;
+  return static_cast<double>(num_new) / elapsed_s;
+}
+
+}  // namespace voqcal

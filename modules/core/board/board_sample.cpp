@@ -1,5 +1,7 @@
 #include "core/board/board_sample.hpp"
 
+#include <algorithm>
+
 namespace voqcal {
 
 Eigen::Isometry3d TransformFromPose(const BoardPose& pose) {
@@ -27,6 +29,23 @@ BoardPose TurnedByHalf(const BoardPose& pose) {
   BoardPose turned = pose;
   for (std::size_t i = 0; i < 4; ++i) turned.corners_m[i] = pose.corners_m[(i + 2) % 4];
   return turned;
+}
+
+std::vector<std::int64_t> IdsOf(const std::vector<const BoardSample*>& samples) {
+  std::vector<std::int64_t> ids;
+  for (const BoardSample* sample : samples) ids.push_back(sample->id);
+  return ids;
+}
+
+std::vector<const BoardSample*> SamplesWithout(const std::vector<BoardSample>& samples,
+                                               const std::vector<std::int64_t>& left_out_ids) {
+  std::vector<const BoardSample*> kept;
+  for (const BoardSample& sample : samples) {
+    const bool is_left_out =
+        std::find(left_out_ids.begin(), left_out_ids.end(), sample.id) != left_out_ids.end();
+    if (!is_left_out) kept.push_back(&sample);
+  }
+  return kept;
 }
 
 }  // namespace voqcal

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "core/board/board_spec.hpp"
 #include "core/geometry/rigid.hpp"
@@ -18,7 +18,7 @@ namespace voqcal {
 struct BoardPose {
   Eigen::Vector3d centre_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-                              ///< Unit length, towards the sensor: board z.
+  ///< Unit length, towards the sensor: board z.
   std::array<Eigen::Vector3d, 4> corners_m{};  ///< Of the outline, in BoardSpec's order.
   /// Of [rotation_rad; translation_m] of T_sensor_board, perturbed on the left (sensor) side at the
   /// board's centre. Zero if unknown (features that were read from a table).
@@ -30,23 +30,24 @@ struct LidarBoard {
   BoardPose pose;                          ///< In the lidar frame.
   std::array<double, 4> edge_lengths_m{};  ///< Each edge measured freely, not from the known size.
   double plane_rms_m = std::numeric_limits<double>::quiet_NaN();
-  int num_beams = 0;                       ///< Scan lines on the board; 0 if the scan has none.
-  double log_likelihood = 0.0;             ///< Higher is better; ranks the candidates of one sweep.
-  PointCloud points_lidar_m;               ///< The points on the board.
+  int num_beams = 0;            ///< Scan lines on the board; 0 if the scan has none.
+  double log_likelihood = 0.0;  ///< Higher is better; ranks the candidates of one sweep.
+  PointCloud points_lidar_m;    ///< The points on the board.
 };
 
 /// What the camera board detector says of one image.
 struct CameraBoard {
-  BoardPose pose;                           ///< In the camera frame.
-  std::vector<Eigen::Vector2d> corners_px;  ///< Inner corners in BoardSpec::InnerCornersBoardM order.
+  BoardPose pose;  ///< In the camera frame.
+  std::vector<Eigen::Vector2d>
+      corners_px;  ///< Inner corners in BoardSpec::InnerCornersBoardM order.
   double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One pose of the board, seen by both sensors: what calibration is made from.
 struct BoardSample {
-  std::int64_t id = 0;       ///< 1, 2, ... in the order of acceptance; never used again.
-  std::int64_t utime = 0;    ///< Lidar capture time, microseconds since the Unix epoch.
-  int num_frames = 1;        ///< Frames averaged.
+  std::int64_t id = 0;     ///< 1, 2, ... in the order of acceptance; never used again.
+  std::int64_t utime = 0;  ///< Lidar capture time, microseconds since the Unix epoch.
+  int num_frames = 1;      ///< Frames averaged.
   LidarBoard lidar;
   CameraBoard camera;
 };
@@ -59,5 +60,12 @@ BoardPose PoseFromTransform(const Eigen::Isometry3d& T_sensor_board, const Board
 
 /// The same board, its axes turned half a turn about its normal (corner i becomes corner i + 2).
 BoardPose TurnedByHalf(const BoardPose& pose);
+
+/// The ids of samples, in order.
+std::vector<std::int64_t> IdsOf(const std::vector<const BoardSample*>& samples);
+
+/// The samples whose id is not in `left_out_ids`, in order; they point into `samples`.
+std::vector<const BoardSample*> SamplesWithout(const std::vector<BoardSample>& samples,
+                                               const std::vector<std::int64_t>& left_out_ids);
 
 }  // namespace voqcal

@@ -1,0 +1,71 @@
+#include "camera_driver/camera_source.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/simulation/simulation.hpp"
+#include "rig/atomic_file.hpp"
+#include "rig/frame_folder.hpp"
+
+namespace voqcal {
+namespace {
+
+// The files' bytes are passed on as they are: PNG stays lossless, JPEG is not compressed twice.
+class FolderCameraSource : public CameraSource {
+ public:
+  explicit FolderCameraSource(const DriverOptions& options)
+      : folder_(options, {".png", ".jpg", ".jpeg"}) {}
+
+  std::optional<TimedImage> Next() override {
+    const auto file = folder_.Next();
+    if (!file) return {};
+    const std::string bytes = ReadWholeFile(file->path);
+    return TimedImage{file->utime, {bytes.begin(), bytes.end()}};
+  }
+
+ private:
+  FrameFolder folder_;
+};
+
+class SimulatedCameraSource : public CameraSource {
+ public:
+  explicit SimulatedCameraSource(const Rig& rig)
+      : simulation_(rig.simulation, rig.board, rig.camera),
+        rate_hz_(rig.camera_driver.rate_hz),
+        jpeg_quality_(rig.camera_driver.jpeg_quality) {}
+
+  std::optional<TimedImage> Next() override {
+    const double time_s = static_cast<double>(num_images_) / rate_hz_;
+    if (time_s > simulation_.DurationS()) return {};
+    ++num_images_;
+    const std::int64_t utime = kSyntheticEpochUtime + std::llround(time_s * 1e6);
+    std::vector<std::uint8_t> jpeg;
+    cv::imencode(
+        ".jpg", simulation_.Image(time_s), jpeg, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality_});
+    return TimedImage{utime, std::move(jpeg)};
+  }
+
+ private:
+  Simulation simulation_;
+  double rate_hz_;
+  int jpeg_quality_;
+  std::int64_t num_images_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig) {
+  switch (rig.camera_driver.source) {
+    case DriverSource::kFolder:
+      return std::make_unique<FolderCameraSource>(rig.camera_driver);
+    case DriverSource::kSimulator:
+      return std::make_unique<SimulatedCameraSource>(rig);
+  }
+  throw std::logic_error("MakeCameraSource: unknown source");
+}
+
+}  // namespace voqcal

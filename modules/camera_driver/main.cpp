@@ -1,0 +1,19 @@
+#include <spdlog/spdlog.h>
+
+#include "camera_driver/camera_driver_node.hpp"
+#include "messaging/bus.hpp"
+#include "messaging/process.hpp"
+#include "messaging/spin.hpp"
+#include "rig/rig.hpp"
+
+int main(int argc, char** argv) {
+  const voqcal::ProcessInfo info{
+      "camera_driver", "Publishes camera images as CAMERA_IMAGE, each with its CAMERA_INFO."};
+  return voqcal::RunProcess(argc, argv, info, [](const voqcal::ProcessArgs& args) {
+    const voqcal::Rig rig = voqcal::LoadRig(args.rig_path);
+    voqcal::Bus bus(args.lcm_url.value_or(rig.lcm_url));
+    voqcal::CameraDriverNode node(rig, &bus);
+    voqcal::Spin(bus, node, rig.channels.module_status);
+    spdlog::info(node.Summary());
+  });
+}

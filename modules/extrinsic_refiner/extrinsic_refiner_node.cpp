@@ -1,0 +1,54 @@
+#include "extrinsic_refiner/extrinsic_refiner_node.hpp"
+
+#include <vector>
+
+#include "messaging/convert_board.hpp"
+#include "messaging/convert_result.hpp"
+
+namespace voqcal {
+
+ExtrinsicRefinerNode::ExtrinsicRefinerNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
+  bus_.Subscribe<samples_t>(
+      rig_.channels.calib_samples, Queue::kLatest, [this](const samples_t& m) { samples_ = m; });
+  bus_.Subscribe<extrinsic_averaged_t>(rig_.channels.extrinsic_averaged,
+                                       Queue::kLatest,
+                                       [this](const extrinsic_averaged_t& m) { averaged_ = m; });
+}
+
+std::string ExtrinsicRefinerNode::State() const {
+  if (!result_) return "waiting for samples and their average";
+  return result_->problem.empty() ? "running" : "waiting: " + result_->problem;
+}
+
+bool ExtrinsicRefinerNode::Step() {
+  if (!samples_ || !averaged_ || samples_->revision != averaged_->samples_revision) return false;
+  if (result_ && result_->samples_revision == samples_->revision) return false;
+  result_ = Refine();
+  Count(result_->problem.empty() ? "refinements" : result_->problem);
+  Republish();
+  return false;
+}
+
+void ExtrinsicRefinerNode::Republish() {
+  if (result_) bus_.Publish(rig_.channels.extrinsic_refined, *result_);
+}
+
+extrinsic_refined_t ExtrinsicRefinerNode::Refine() const {
+  extrinsic_refined_t result{};
+  std::string problem = averaged_->problem;
+  if (problem.empty()) {
+    const std::vector<BoardSample> all = FromMessage(*samples_);
+    const std::vector<const BoardSample*> samples =
+        SamplesWithout(all, averaged_->inconsistent_ids);
+    const RefinedExtrinsic refined = RefineExtrinsic(
+        samples, rig_.camera, FromMessage(averaged_->T_camera_lidar), rig_.extrinsic_refiner);
+    result = ToMessage(refined, IdsOf(samples));
+    if (!refined.IsUsable()) problem = "the refinement is " + ToString(refined.status);
+  }
+  result.utime = samples_->utime;
+  result.samples_revision = samples_->revision;
+  result.problem = problem;
+  return result;
+}
+
+}  // namespace voqcal

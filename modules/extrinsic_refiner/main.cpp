@@ -1,0 +1,20 @@
+#include <spdlog/spdlog.h>
+
+#include "extrinsic_refiner/extrinsic_refiner_node.hpp"
+#include "messaging/bus.hpp"
+#include "messaging/process.hpp"
+#include "messaging/spin.hpp"
+#include "rig/rig.hpp"
+
+int main(int argc, char** argv) {
+  const voqcal::ProcessInfo info{
+      "extrinsic_refiner",
+      "Refines EXTRINSIC_AVERAGED over all samples and publishes EXTRINSIC_REFINED."};
+  return voqcal::RunProcess(argc, argv, info, [](const voqcal::ProcessArgs& args) {
+    const voqcal::Rig rig = voqcal::LoadRig(args.rig_path);
+    voqcal::Bus bus(args.lcm_url.value_or(rig.lcm_url));
+    voqcal::ExtrinsicRefinerNode node(rig, &bus);
+    voqcal::Spin(bus, node, rig.channels.module_status);
+    spdlog::info(node.Summary());
+  });
+}

@@ -1,0 +1,47 @@
+#include "lidar_board_detector/lidar_board_detector_node.hpp"
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "messaging/convert_board.hpp"
+#include "messaging/convert_points.hpp"
+
+namespace voqcal {
+namespace {
+
+// Nothing, and why, for a cloud that contradicts itself: one sweep's fault, not the module's.
+std::optional<PointCloud> CloudOf(const pointcloud2_t& message, std::string* miss) try {
+  return FromMessage(message);
+} catch (const std::runtime_error& error) {
+  *miss = error.what();
+  return {};
+}
+
+}  // namespace
+
+LidarBoardDetectorNode::LidarBoardDetectorNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
+  bus_.Subscribe<pointcloud2_t>(rig_.channels.lidar_points,
+                                Queue::kEvery,
+                                [this](const pointcloud2_t& message) { OnPoints(message); });
+}
+
+void LidarBoardDetectorNode::OnPoints(const pointcloud2_t& message) {
+  std::string miss;
+  std::vector<LidarBoard> candidates;
+  if (const auto cloud = CloudOf(message, &miss)) {
+    auto found = DetectLidarBoard(*cloud, rig_.board, rig_.lidar_board_detector);
+    if (found) {
+      candidates = std::move(*found);
+    } else {
+      miss = ToString(found.error());
+    }
+  }
+  Count(miss.empty() ? "boards" : miss);
+  bus_.Publish(rig_.channels.lidar_board,
+               LidarBoardMessage(candidates, miss, message.utime, seq_++));
+}
+
+}  // namespace voqcal

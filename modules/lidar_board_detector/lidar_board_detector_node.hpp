@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "messaging/bus.hpp"
+#include "messaging/module.hpp"
+#include "rig/rig.hpp"
+#include "voqcal/pointcloud2_t.hpp"
+
+namespace voqcal {
+
+/// LIDAR_POINTS in, LIDAR_BOARD out: one message for every sweep, with candidates or the reason for
+/// none.
+class LidarBoardDetectorNode : public Module {
+ public:
+  /// @param bus  borrowed; must outlive the node.
+  LidarBoardDetectorNode(const Rig& rig, Bus* bus);
+
+  std::string Name() const override { return "lidar_board_detector"; }
+
+ private:
+  void OnPoints(const pointcloud2_t& message);
+
+  Rig rig_;
+  Bus& bus_;
+  std::int64_t seq_ = 0;
+};
+
+}  // namespace voqcal

@@ -1,0 +1,130 @@
+#include "sample_collector/sample_collector_node.hpp"
+
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "messaging/convert_board.hpp"
+#include "voqcal/event_t.hpp"
+#include "voqcal/samples_t.hpp"
+
+namespace voqcal {
+
+SampleCollectorNode::SampleCollectorNode(const Rig& rig,
+                                         Bus* bus,
+                                         const std::filesystem::path& session_folder)
+    : channels_(rig.channels),
+      bus_(*bus),
+      picker_(rig.board, rig.sample_collector),
+      session_(session_folder),
+      log_sha256_(session_.Sha256()) {
+  picker_.SetKnown(session_.samples());
+  if (!samples().empty()) {
+    spdlog::info("{}: goes on with {} samples", session_folder.string(), samples().size());
+  }
+  bus_.Subscribe<lidar_board_t>(
+      channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& message) {
+        has_new_frames_ = true;
+        Decide(picker_.Add(SightingFromMessage(message)));
+      });
+  bus_.Subscribe<camera_board_t>(
+      channels_.camera_board, Queue::kEvery, [this](const camera_board_t& message) {
+        has_new_frames_ = true;
+        Decide(picker_.Add(SightingFromMessage(message)));
+      });
+  bus_.Subscribe<command_t>(channels_.calib_command,
+                            Queue::kEvery,
+                            [this](const command_t& message) { OnCommand(message); });
+}
+
+std::string SampleCollectorNode::State() const {
+  return (is_finished_ ? "finished: " : "running: ") + std::to_string(samples().size()) +
+         " samples";
+}
+
+void SampleCollectorNode::Republish() {
+  if (is_finish_requested_ && !has_new_frames_) Finish();
+  has_new_frames_ = false;
+  PublishSamples();
+}
+
+void SampleCollectorNode::Accept(const BoardSample& sample) {
+  const std::int64_t id = session_.Accept(sample);
+  log_sha256_ = session_.Sha256();
+  Count("accepted");
+  Announce(sample.utime, "accepted", id, "");
+  PublishSamples();
+}
+
+void SampleCollectorNode::Finish() {
+  is_finish_requested_ = false;
+  Decide(picker_.Flush());
+  is_finished_ = true;
+  Announce(samples().empty() ? 0 : samples().back().utime, "finished", 0, "");
+  PublishSamples();
+}
+
+void SampleCollectorNode::OnCommand(const command_t& message) {
+  if (message.command == "capture") {
+    picker_.RequestCapture();
+  } else if (message.command == "discard") {
+    Discard(message);
+  } else if (message.command == "finish") {
+    is_finish_requested_ = true;
+  } else if (message.command == "reset") {
+    session_.Reset();
+    log_sha256_ = session_.Sha256();
+    picker_.SetKnown({});
+    is_finished_ = false;
+    Announce(message.utime, "reset", 0, "");
+    PublishSamples();
+  } else {
+    Announce(message.utime, "rejected", 0, "unknown command '" + message.command + "'");
+    Count("unknown command");
+  }
+}
+
+void SampleCollectorNode::Discard(const command_t& message) {
+  const std::optional<std::int64_t> id = session_.Discard(message.sample_id);
+  if (!id) {
+    const std::string reason = "no sample " + std::to_string(message.sample_id) + " to discard";
+    Announce(message.utime, "rejected", message.sample_id, reason);
+    return;
+  }
+  log_sha256_ = session_.Sha256();
+  picker_.SetKnown(samples());
+  Count("discarded");
+  Announce(message.utime, "discarded", *id, "by command");
+  PublishSamples();
+}
+
+void SampleCollectorNode::Decide(const std::vector<PickerDecision>& decisions) {
+  for (const PickerDecision& decision : decisions) {
+    if (decision.accepted) {
+      Accept(*decision.accepted);
+    } else {
+      Count(decision.reason);
+      Announce(decision.utime, "rejected", 0, decision.reason);
+    }
+  }
+}
+
+void SampleCollectorNode::Announce(std::int64_t utime,
+                                   const std::string& kind,
+                                   std::int64_t sample_id,
+                                   const std::string& reason) {
+  event_t event{};
+  event.utime = utime;
+  event.seq = event_seq_++;
+  event.kind = kind;
+  event.sample_id = sample_id;
+  event.reason = reason;
+  bus_.Publish(channels_.calib_event, event);
+}
+
+void SampleCollectorNode::PublishSamples() {
+  bus_.Publish(channels_.calib_samples,
+               ToMessage(samples(), session_.revision(), is_finished_, log_sha256_));
+}
+
+}  // namespace voqcal

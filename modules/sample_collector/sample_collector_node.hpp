@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/board/sample_picker.hpp"
+#include "messaging/bus.hpp"
+#include "messaging/module.hpp"
+#include "rig/rig.hpp"
+#include "sample_collector/session_log.hpp"
+#include "voqcal/camera_board_t.hpp"
+#include "voqcal/command_t.hpp"
+#include "voqcal/lidar_board_t.hpp"
+
+namespace voqcal {
+
+/// LIDAR_BOARD, CAMERA_BOARD and CALIB_COMMAND in, CALIB_SAMPLES and CALIB_EVENT out. Accepted
+/// samples are on the disk before they are announced; a node made again on the same session goes
+/// on.
+class SampleCollectorNode : public Module {
+ public:
+  /// @param bus  borrowed; must outlive the node.
+  /// @throws std::runtime_error if the session's log cannot be made or read.
+  SampleCollectorNode(const Rig& rig, Bus* bus, const std::filesystem::path& session_folder);
+
+  std::string Name() const override { return "sample_collector"; }
+  std::string State() const override;
+  void Republish() override;
+
+  /// Takes a sample that another program extracted.
+  void Accept(const BoardSample& sample);
+
+  /// No more frames will come: judges what waits and says so in CALIB_SAMPLES. The command "finish"
+  /// does the same once no frame has come for a second, since detectors may still be at work.
+  void Finish();
+
+  const std::vector<BoardSample>& samples() const { return session_.samples(); }
+
+ private:
+  void OnCommand(const command_t& message);
+  void Discard(const command_t& message);
+  void Decide(const std::vector<PickerDecision>& decisions);
+  void Announce(std::int64_t utime,
+                const std::string& kind,
+                std::int64_t sample_id,
+                const std::string& reason);
+  void PublishSamples();
+
+  Channels channels_;
+  Bus& bus_;
+  SamplePicker picker_;
+  SessionLog session_;
+  std::string log_sha256_;
+  std::int64_t event_seq_ = 0;
+  bool is_finish_requested_ = false;
+  bool is_finished_ = false;
+  bool has_new_frames_ = false;  // since the last Republish
+};
+
+}  // namespace voqcal

@@ -1,0 +1,119 @@
+#include "sample_collector/session_log.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <system_error>
+
+#include "messaging/bus.hpp"
+#include "messaging/convert_board.hpp"
+#include "rig/sha256.hpp"
+#include "voqcal/event_t.hpp"
+#include "voqcal/sample_t.hpp"
+
+namespace voqcal {
+namespace {
+
+template <typename Message>
+std::vector<std::uint8_t> Encode(const Message& message) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+template <typename Message>
+Message Decode(const LogEvent& event) {
+  Message message{};
+  const std::string problem = DecodeMessage(event.bytes.data(), event.bytes.size(), &message);
+  if (!problem.empty()) {
+    throw std::runtime_error("event " + std::to_string(event.number) + " (" + event.channel +
+                             "): " + problem);
+  }
+  return message;
+}
+
+std::filesystem::path MakeFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw std::runtime_error(folder.string() +
+                             ": cannot make the session's folder: " + error.message());
+  }
+  return folder / kSamplesLogName;
+}
+
+}  // namespace
+
+SessionLog::SessionLog(const std::filesystem::path& folder)
+    : path_(MakeFolder(folder)), writer_(path_) {
+  // The writer has cut off what a crash left half-written: what is there is whole.
+  LogReader reader(path_);
+  try {
+    while (const std::optional<LogEvent> event = reader.Next()) Apply(*event);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(path_.string() + ": is no log of samples: " + error.what());
+  }
+}
+
+std::int64_t SessionLog::Accept(BoardSample sample) {
+  sample.id = next_id_;
+  Append(kSampleChannel, sample.utime, Encode(ToMessage(sample)));
+  return sample.id;
+}
+
+std::optional<std::int64_t> SessionLog::Discard(std::int64_t id) {
+  if (id == 0 && !samples_.empty()) id = samples_.back().id;
+  const auto sample = std::find_if(
+      samples_.begin(), samples_.end(), [id](const BoardSample& each) { return each.id == id; });
+  if (sample == samples_.end()) return {};
+  event_t event{};
+  event.utime = sample->utime;
+  event.seq = revision_;
+  event.kind = "discarded";
+  event.sample_id = id;
+  Append(kEventChannel, event.utime, Encode(event));
+  return id;
+}
+
+void SessionLog::Reset() {
+  event_t event{};
+  event.utime = samples_.empty() ? 0 : samples_.back().utime;
+  event.seq = revision_;
+  event.kind = "reset";
+  Append(kEventChannel, event.utime, Encode(event));
+}
+
+std::string SessionLog::Sha256() const { return Sha256OfFile(path_); }
+
+void SessionLog::Append(const char* channel, std::int64_t utime, std::vector<std::uint8_t> bytes) {
+  const LogEvent event{revision_, utime, channel, std::move(bytes)};
+  writer_.Write(event);
+  writer_.Flush();
+  Apply(event);
+}
+
+// One way to change the samples, whether the change is new or read again: both give the same state.
+void SessionLog::Apply(const LogEvent& event) {
+  if (event.channel == kSampleChannel) {
+    samples_.push_back(FromMessage(Decode<sample_t>(event)));
+    next_id_ = samples_.back().id + 1;
+  } else if (event.channel == kEventChannel) {
+    const event_t change = Decode<event_t>(event);
+    if (change.kind == "reset") {
+      samples_.clear();
+    } else {
+      samples_.erase(std::remove_if(samples_.begin(),
+                                    samples_.end(),
+                                    [&change](const BoardSample& each) {
+                                      return each.id == change.sample_id;
+                                    }),
+                     samples_.end());
+    }
+  } else {
+    throw std::runtime_error("it has channel " + event.channel);
+  }
+  ++revision_;
+}
+
+}  // namespace voqcal

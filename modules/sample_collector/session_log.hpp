@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/board/board_sample.hpp"
+#include "messaging/log.hpp"
+
+namespace voqcal {
+
+/// Name of a session's log of samples in its folder.
+inline constexpr char kSamplesLogName[] = "samples.lcm";
+/// Its channels.
+inline constexpr char kSampleChannel[] = "CALIB_SAMPLE";
+inline constexpr char kEventChannel[] = "CALIB_EVENT";
+
+/// The accepted samples of one session, kept as an append-only LCM log: samples.lcm in the
+/// session's folder. Every change is on the disk before the call returns, and the log opened again
+/// gives the same samples.
+///
+/// Events: CALIB_SAMPLE (sample_t) for an accepted sample, CALIB_EVENT (event_t) for "discarded"
+/// and "reset". Event times are sensor times, so the same samples make the same bytes.
+class SessionLog {
+ public:
+  /// @param folder  made if missing; an existing samples.lcm goes on.
+  /// @throws std::runtime_error if the folder or the log cannot be made, read or locked.
+  explicit SessionLog(const std::filesystem::path& folder);
+
+  /// Numbers the sample (id 1, 2, ...) and adds it. @return its id.
+  std::int64_t Accept(BoardSample sample);
+
+  /// Takes a sample away; 0 means the newest. @return its id; nothing if there is no such sample.
+  std::optional<std::int64_t> Discard(std::int64_t id);
+
+  /// Takes all samples away.
+  void Reset();
+
+  const std::vector<BoardSample>& samples() const { return samples_; }
+  /// How many changes there were: a new number for each set of samples of this session.
+  std::int64_t revision() const { return revision_; }
+  /// SHA-256 of the log's bytes, lower-case hex.
+  std::string Sha256() const;
+
+ private:
+  void Apply(const LogEvent& event);
+  void Append(const char* channel, std::int64_t utime, std::vector<std::uint8_t> bytes);
+
+  std::filesystem::path path_;
+  LogWriter writer_;
+  std::vector<BoardSample> samples_;
+  std::int64_t revision_ = 0;
+  std::int64_t next_id_ = 1;
+};
+
+}  // namespace voqcal

@@ -1,0 +1,69 @@
+#include "voq_selector/voq_selector_node.hpp"
+
+#include <vector>
+
+#include "messaging/convert_board.hpp"
+#include "messaging/convert_result.hpp"
+
+namespace voqcal {
+namespace {
+
+std::int64_t NumCombinationsOfThree(std::int64_t n) { return n * (n - 1) * (n - 2) / 6; }
+
+}  // namespace
+
+VoqSelectorNode::VoqSelectorNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
+  bus_.Subscribe<samples_t>(
+      rig_.channels.calib_samples, Queue::kLatest, [this](const samples_t& m) { samples_ = m; });
+}
+
+std::string VoqSelectorNode::State() const {
+  if (!result_) return "waiting for samples";
+  return result_->problem.empty() ? "running" : "waiting: " + result_->problem;
+}
+
+bool VoqSelectorNode::Step() {
+  if (!samples_ || (result_ && result_->samples_revision == samples_->revision)) return false;
+  result_ = Select(*samples_);
+  Count(result_->problem.empty() ? "selections" : result_->problem);
+  Republish();
+  return false;
+}
+
+void VoqSelectorNode::Republish() {
+  if (result_) bus_.Publish(rig_.channels.voq_sets, *result_);
+}
+
+voq_sets_t VoqSelectorNode::Select(const samples_t& message) const {
+  voq_sets_t result{};
+  result.utime = message.utime;
+  result.samples_revision = message.revision;
+  const std::vector<BoardSample> samples = FromMessage(message);
+  const Consistency consistency = FindConsistent(samples, rig_.consistency);
+  for (const InconsistentSample& each : consistency.inconsistent) {
+    result.inconsistent_ids.push_back(samples[static_cast<std::size_t>(each.sample)].id);
+    result.inconsistent_reasons.push_back(each.reason);
+  }
+  result.num_inconsistent = static_cast<std::int32_t>(result.inconsistent_ids.size());
+
+  std::vector<BoardSample> consistent;
+  std::vector<std::int64_t> ids;
+  for (const int index : consistency.consistent) {
+    consistent.push_back(samples[static_cast<std::size_t>(index)]);
+    ids.push_back(consistent.back().id);
+  }
+  result.num_combinations = NumCombinationsOfThree(static_cast<std::int64_t>(consistent.size()));
+  if (consistent.size() < 3) {
+    result.problem = "fewer than three samples that agree with each other: " +
+                     std::to_string(consistent.size()) + " of " + std::to_string(samples.size());
+    return result;
+  }
+  for (const VoqSet& set : SelectByVoq(consistent, rig_.board, rig_.voq_selector)) {
+    result.sets.push_back(ToMessage(set, ids));
+  }
+  result.num_sets = static_cast<std::int32_t>(result.sets.size());
+  if (result.sets.empty()) result.problem = "all boards face the same way: tilt it differently";
+  return result;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,66 @@
+// calibrate: the main job on a recording, or on features that another program extracted.
+
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+
+#include <system_error>
+
+#include "calibrate/collect.hpp"
+#include "calibrate/summary.hpp"
+#include "common/scratch_folder.hpp"
+#include "common/tool_main.hpp"
+#include "rig/rig.hpp"
+
+namespace voqcal {
+namespace {
+
+struct CalibrateArgs {
+  std::filesystem::path rig;
+  InputPaths input;
+  std::filesystem::path out;
+};
+
+// Moves the finished files to where they were asked for, the result last.
+void Deliver(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  std::filesystem::create_directories(to, error);
+  for (const char* name : {kSamplesLogName, kResultName}) {
+    if (!error) std::filesystem::rename(from / name, to / name, error);
+  }
+  if (error) throw std::runtime_error(to.string() + ": cannot write: " + error.message());
+}
+
+void Calibrate(const CalibrateArgs& args) {
+  const Rig rig = LoadRig(args.rig);
+  const ScratchFolder scratch(args.out);
+  const auto run = CollectSamples(rig, args.input, scratch.path());
+  run->Finish(/*is_collecting_only=*/false);
+  if (!run->assessor().result()) {
+    throw std::runtime_error(args.input.Given().string() + ": no calibration: " +
+                             run->assessor().problem() + " (" + CountsOf(*run) + ")");
+  }
+  Deliver(scratch.path(), args.out);
+  std::cout << Summary(*run->assessor().result()) << "frames\n  " << CountsOf(*run)
+            << "\nwritten\n  " << (args.out / kResultName).string() << "\n  "
+            << (args.out / kSamplesLogName).string() << '\n';
+}
+
+}  // namespace
+}  // namespace voqcal
+
+int main(int argc, char** argv) {
+  CLI::App app("Calibrates a camera against a lidar from a recording of both.", "calibrate");
+  voqcal::CalibrateArgs args;
+  app.add_option("--rig", args.rig, "The rig file (YAML): board, camera, channels, options")
+      ->required();
+  auto* input = app.add_option_group("input", "One of:");
+  input->add_option("--log", args.input.log, "A recording (LCM log), or a session's samples.lcm");
+  input->add_option(
+      "--poses", args.input.poses, "Extracted features: poses.csv of cam_lidar_calibration");
+  input->require_option(1);
+  app.add_option("--out", args.out, "Folder for extrinsic.yaml and samples.lcm; made if missing")
+      ->required();
+  return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Calibrate(args); });
+}

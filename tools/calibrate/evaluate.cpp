@@ -1,0 +1,80 @@
+// evaluate: scores an extrinsic on poses that it never saw.
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+#include <vector>
+
+#include "calibrate/collect.hpp"
+#include "calibrate/summary.hpp"
+#include "common/scratch_folder.hpp"
+#include "common/tool_main.hpp"
+#include "core/assessment/scores.hpp"
+#include "core/estimation/consistency.hpp"
+#include "rig/result_file.hpp"
+#include "rig/rig.hpp"
+
+namespace voqcal {
+namespace {
+
+struct EvaluateArgs {
+  std::filesystem::path rig;
+  InputPaths input;
+  std::filesystem::path extrinsic;
+};
+
+void PrintPoses(const std::vector<const BoardSample*>& samples, const SceneScore& score) {
+  std::puts("sample  centre_px  centre_mm  corner_mm  normal_deg");
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const PoseScore& pose = score.poses[i];
+    std::printf("%6lld  %9.2f  %9.2f  %9.2f  %10.3f\n",
+                static_cast<long long>(samples[i]->id),
+                pose.centre_px,
+                pose.centre_mm,
+                pose.corner_mm,
+                pose.normal_deg);
+  }
+}
+
+void Evaluate(const EvaluateArgs& args) {
+  const Rig rig = LoadRig(args.rig);
+  const Eigen::Isometry3d T_camera_lidar = ReadExtrinsic(args.extrinsic);
+  const ScratchFolder scratch(std::filesystem::temp_directory_path() / "voqcal-evaluate");
+  const auto run = CollectSamples(rig, args.input, scratch.path());
+  run->Finish(/*is_collecting_only=*/true);
+  if (run->samples().empty()) {
+    throw std::runtime_error(args.input.Given().string() + ": no sample to score (" +
+                             CountsOf(*run) + ")");
+  }
+  const Consistency consistency = FindConsistent(run->samples(), rig.consistency);
+  std::vector<const BoardSample*> samples;
+  for (const int index : consistency.consistent) {
+    samples.push_back(&run->samples()[static_cast<std::size_t>(index)]);
+  }
+  const SceneScore score = ScoreScene(samples, rig.camera, T_camera_lidar);
+  PrintPoses(samples, score);
+  for (const InconsistentSample& each : consistency.inconsistent) {
+    std::printf("%6lld  left out: %s\n",
+                static_cast<long long>(run->samples()[static_cast<std::size_t>(each.sample)].id),
+                each.reason.c_str());
+  }
+  std::printf("%zu samples: %s\n", samples.size(), Summary(score).c_str());
+}
+
+}  // namespace
+}  // namespace voqcal
+
+int main(int argc, char** argv) {
+  CLI::App app("Scores an extrinsic on the board poses of a recording.", "evaluate");
+  voqcal::EvaluateArgs args;
+  app.add_option("--rig", args.rig, "The rig file (YAML)")->required();
+  auto* input = app.add_option_group("input", "One of:");
+  input->add_option("--log", args.input.log, "A recording (LCM log), or a session's samples.lcm");
+  input->add_option(
+      "--poses", args.input.poses, "Extracted features: poses.csv of cam_lidar_calibration");
+  input->require_option(1);
+  app.add_option("--extrinsic", args.extrinsic, "extrinsic.yaml, or any YAML with T_camera_lidar")
+      ->required();
+  return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Evaluate(args); });
+}

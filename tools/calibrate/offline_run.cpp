@@ -1,0 +1,88 @@
+#include "calibrate/offline_run.hpp"
+
+#include <array>
+#include <chrono>
+#include <exception>
+#include <set>
+#include <stdexcept>
+
+#include "messaging/log.hpp"
+#include "sample_collector/session_log.hpp"
+
+namespace voqcal {
+
+OfflineRun::OfflineRun(const Rig& rig, const std::filesystem::path& session_folder)
+    : channels_(rig.channels),
+      bus_("memq://"),
+      lidar_detector_(rig, &bus_),
+      camera_detector_(rig, &bus_),
+      collector_(rig, &bus_, session_folder),
+      selector_(rig, &bus_),
+      estimator_(rig, &bus_),
+      refiner_(rig, &bus_),
+      assessor_(rig, &bus_, session_folder) {}
+
+void OfflineRun::FeedLog(const std::filesystem::path& log, const OnProgress& on_progress) {
+  const std::set<std::string> inputs = {
+      channels_.lidar_points, channels_.camera_image, channels_.calib_command};
+  std::set<std::string> seen;
+  LogReader reader(log);
+  while (const std::optional<LogEvent> event = reader.Next()) {
+    seen.insert(event->channel);
+    if (inputs.count(event->channel) == 0) continue;
+    try {
+      bus_.PublishBytes(event->channel, event->bytes.data(), event->bytes.size());
+      HandleAll();
+    } catch (const std::exception& error) {
+      throw std::runtime_error(log.string() + ": event " + std::to_string(event->number) + " (" +
+                               event->channel + "): " + error.what());
+    }
+    on_progress(static_cast<double>(reader.offset()) / static_cast<double>(reader.num_bytes()),
+                samples().size());
+  }
+  for (const std::string& needed : {channels_.lidar_points, channels_.camera_image}) {
+    if (seen.count(needed) != 0) continue;
+    std::string there;
+    for (const std::string& channel : seen) there += (there.empty() ? "" : ", ") + channel;
+    throw std::runtime_error(log.string() + ": has no channel " + needed + "; it has " +
+                             (there.empty() ? "no events" : there));
+  }
+}
+
+void OfflineRun::FeedSamples(const std::vector<BoardSample>& samples) {
+  for (const BoardSample& sample : samples) collector_.Accept(sample);
+}
+
+void OfflineRun::Finish(bool is_collecting_only) {
+  collector_.Finish();
+  HandleAll();
+  if (is_collecting_only) return;
+  const std::array<Module*, 4> stages = {&selector_, &estimator_, &refiner_, &assessor_};
+  for (Module* stage : stages) {
+    while (stage->Step()) {
+    }
+    HandleAll();
+  }
+}
+
+std::vector<const Module*> OfflineRun::modules() const {
+  return {&lidar_detector_,
+          &camera_detector_,
+          &collector_,
+          &selector_,
+          &estimator_,
+          &refiner_,
+          &assessor_};
+}
+
+void OfflineRun::HandleAll() {
+  while (bus_.HandleOnce(std::chrono::milliseconds(0))) {
+  }
+}
+
+bool IsSamplesLog(const std::filesystem::path& log) {
+  const std::optional<LogEvent> first = LogReader(log).Next();
+  return first && (first->channel == kSampleChannel);
+}
+
+}  // namespace voqcal

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "assessor/assessor_node.hpp"
+#include "camera_board_detector/camera_board_detector_node.hpp"
+#include "extrinsic_estimator/extrinsic_estimator_node.hpp"
+#include "extrinsic_refiner/extrinsic_refiner_node.hpp"
+#include "lidar_board_detector/lidar_board_detector_node.hpp"
+#include "messaging/bus.hpp"
+#include "rig/rig.hpp"
+#include "sample_collector/sample_collector_node.hpp"
+#include "voq_selector/voq_selector_node.hpp"
+
+namespace voqcal {
+
+/// What feeding a log is to the caller: called now and then with the share done and the samples so
+/// far.
+using OnProgress = std::function<void(double share, std::size_t num_samples)>;
+
+/// The live system's modules on one in-process bus: the same input gives the same bytes as the live
+/// processes, faster.
+class OfflineRun {
+ public:
+  /// @param session_folder  where samples.lcm and extrinsic.yaml go.
+  OfflineRun(const Rig& rig, const std::filesystem::path& session_folder);
+
+  /// Feeds the sensor messages of a recording (sweeps, images, commands), event by event.
+  /// @throws std::runtime_error naming the log, byte or event, and the cause.
+  void FeedLog(const std::filesystem::path& log, const OnProgress& on_progress);
+
+  /// Feeds samples that another program extracted.
+  void FeedSamples(const std::vector<BoardSample>& samples);
+
+  /// Judges the last frames; then, unless `is_collecting_only`, estimates, refines and assesses.
+  void Finish(bool is_collecting_only);
+
+  const std::vector<BoardSample>& samples() const { return collector_.samples(); }
+  const AssessorNode& assessor() const { return assessor_; }
+
+  /// What each module counted, by module: boards, misses by reason, samples, rejections by reason.
+  std::vector<const Module*> modules() const;
+
+ private:
+  void HandleAll();
+
+  Channels channels_;
+  Bus bus_;
+  LidarBoardDetectorNode lidar_detector_;
+  CameraBoardDetectorNode camera_detector_;
+  SampleCollectorNode collector_;
+  VoqSelectorNode selector_;
+  ExtrinsicEstimatorNode estimator_;
+  ExtrinsicRefinerNode refiner_;
+  AssessorNode assessor_;
+};
+
+/// True if the log is a session's samples.lcm rather than a recording of sensors.
+/// @throws std::runtime_error naming the log and the cause if it cannot be read.
+bool IsSamplesLog(const std::filesystem::path& log);
+
+}  // namespace voqcal

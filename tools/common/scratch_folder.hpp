@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+
+namespace voqcal {
+
+/// A folder made for one run beside where its results will go, and removed with all that is still
+/// in it.
+class ScratchFolder {
+ public:
+  /// @param beside  the folder or file beside which it is made; its parent folders are made if
+  /// missing.
+  /// @throws std::runtime_error naming the folder and the cause.
+  explicit ScratchFolder(const std::filesystem::path& beside);
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace voqcal

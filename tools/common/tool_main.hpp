@@ -1,0 +1,15 @@
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace voqcal {
+
+/// The frame of every tool's main(): reads the flags that `app` has (and --version), runs `body`,
+/// and turns its exception into one line on stderr.
+///
+/// @return the exit status: 0; 1 when `body` throws; 2 for flags that cannot be understood.
+int RunTool(CLI::App* app, int argc, const char* const* argv, const std::function<void()>& body);
+
+}  // namespace voqcal

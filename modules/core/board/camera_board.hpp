@@ -1,9 +1,9 @@
 #pragma once
 
-#include <opencv2/core/mat.hpp>
-
 #include <string>
 #include <vector>
+
+#include <opencv2/core/mat.hpp>
 
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
@@ -36,7 +36,8 @@ std::string ToString(CameraBoardMiss miss);  ///< "no chessboard", ... as MODULE
 ///
 /// @param image  8-bit, 1 or 3 channels (BGR), of the camera's size.
 /// @return the board, or why none was found.
-/// @throws std::invalid_argument if `image` has another size or type, or the camera, board or options
+/// @throws std::invalid_argument if `image` has another size or type, or the camera, board or
+/// options
 ///     have Problems().
 Expected<CameraBoard, CameraBoardMiss> DetectCameraBoard(const cv::Mat& image,
                                                          const CameraModel& camera,

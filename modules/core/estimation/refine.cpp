@@ -70,14 +70,15 @@ bool Minimise(const std::vector<RefineTerm>& terms, const RefineOptions& options
 }
 
 // All residuals of one pose, stacked.
-struct PosePull {
-  Eigen::MatrixXd J;     // m x 6
-  Eigen::VectorXd pull;  // m: weight * rho' * r
+struct PoseResiduals {
+  Eigen::MatrixXd J;             // m x 6
+  Eigen::VectorXd r;             // m, pixels
+  Eigen::VectorXd sqrt_weights;  // m: sqrt(weight * rho')
 };
 
 struct Linearisation {
   Matrix6d curvature = Matrix6d::Zero();  // second derivative of the cost, Gauss-Newton's
-  std::vector<PosePull> poses;
+  std::vector<PoseResiduals> poses;
 };
 
 Linearisation LineariseAtStart(const std::vector<RefineTerm>& terms,
@@ -88,7 +89,9 @@ Linearisation LineariseAtStart(const std::vector<RefineTerm>& terms,
   const Eigen::Index rows_per_pose = kRowsPerTerm * terms_per_pose;
   Linearisation linear;
   linear.poses.assign(num_poses,
-                      {Eigen::MatrixXd(rows_per_pose, 6), Eigen::VectorXd(rows_per_pose)});
+                      {Eigen::MatrixXd(rows_per_pose, 6),
+                       Eigen::VectorXd(rows_per_pose),
+                       Eigen::VectorXd(rows_per_pose)});
 
   const Vector6d delta = Vector6d::Zero();
   const double* parameters = delta.data();
@@ -106,10 +109,11 @@ Linearisation LineariseAtStart(const std::vector<RefineTerm>& terms,
     const Eigen::Matrix2d curvature_r =
         rho[1] * Eigen::Matrix2d::Identity() + 2.0 * rho[2] * r * r.transpose();
     linear.curvature += terms[i].weight * J.transpose() * curvature_r * J;
-    PosePull& pose = linear.poses[static_cast<std::size_t>(terms[i].pose)];
+    PoseResiduals& pose = linear.poses[static_cast<std::size_t>(terms[i].pose)];
     const Eigen::Index row = kRowsPerTerm * (static_cast<Eigen::Index>(i) % terms_per_pose);
     pose.J.middleRows<kRowsPerTerm>(row) = J;
-    pose.pull.segment<kRowsPerTerm>(row) = terms[i].weight * rho[1] * r;
+    pose.r.segment<kRowsPerTerm>(row) = r;
+    pose.sqrt_weights.segment<kRowsPerTerm>(row).setConstant(std::sqrt(terms[i].weight * rho[1]));
   }
   return linear;
 }
@@ -127,26 +131,42 @@ bool InvertIfRegular(const Matrix6d& curvature, Matrix6d* inverse) {
   return true;
 }
 
+// The pose's weighted residuals as they would be had the fit not bent towards them:
+//     (I - G)^-1/2 s,  s = W^1/2 r,  G = W^1/2 J A^-1 J' W^1/2 the pose's leverage
+// The correction "CR2" of Bell and McCaffrey 2002, "Bias reduction in standard errors for linear
+// regression with multi-stage samples", Survey Methodology 28.
+Eigen::VectorXd UnbentResiduals(const PoseResiduals& pose, const Matrix6d& curvature_inverse) {
+  // Full leverage leaves nothing to correct from; the bound keeps rounding from being blown up.
+  constexpr double kLeastFreedom = 0.01;
+  const Eigen::MatrixXd J_weighted = pose.sqrt_weights.asDiagonal() * pose.J;
+  const Eigen::MatrixXd freedom = Eigen::MatrixXd::Identity(pose.r.size(), pose.r.size()) -
+                                  J_weighted * curvature_inverse * J_weighted.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(freedom);
+  const Eigen::VectorXd scale =
+      eigen.eigenvalues().cwiseMax(kLeastFreedom).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd s = pose.sqrt_weights.cwiseProduct(pose.r);
+  return eigen.eigenvectors() * scale.asDiagonal() * (eigen.eigenvectors().transpose() * s);
+}
+
 // Covariance of an M-estimator whose residuals are correlated within a pose (one lidar board moves
 // its centre and its corners together) but not between poses:
-//     A^-1 (sum over poses of J_p' S J_p) A^-1 * m n / (m n - 6)
-// A: curvature, J_p: all m rows of pose p, S: m x m second moment of weight * rho' * r over the n
+//     A^-1 (sum over poses of J_p' W_p^1/2 S W_p^1/2 J_p) A^-1
+// A: curvature, J_p: all m rows of pose p, S: m x m second moment of the weighted residuals over
 // poses. Pooling S follows Pan 2001, "On the robust variance estimator in generalised estimating
 // equations", Biometrika 88; unlike each pose's own product it keeps full rank with few poses.
 Matrix6d PooledSandwich(const Linearisation& linear, const Matrix6d& curvature_inverse) {
-  const auto num_poses = static_cast<double>(linear.poses.size());
-  const Eigen::Index rows_per_pose = linear.poses.front().pull.size();
+  const Eigen::Index rows_per_pose = linear.poses.front().r.size();
   Eigen::MatrixXd second_moment = Eigen::MatrixXd::Zero(rows_per_pose, rows_per_pose);
-  for (const PosePull& pose : linear.poses) {
-    second_moment += pose.pull * pose.pull.transpose() / num_poses;
+  for (const PoseResiduals& pose : linear.poses) {
+    const Eigen::VectorXd s = UnbentResiduals(pose, curvature_inverse);
+    second_moment += s * s.transpose() / static_cast<double>(linear.poses.size());
   }
   Matrix6d pull_variance = Matrix6d::Zero();
-  for (const PosePull& pose : linear.poses) {
-    pull_variance += pose.J.transpose() * second_moment * pose.J;
+  for (const PoseResiduals& pose : linear.poses) {
+    const Eigen::MatrixXd J_weighted = pose.sqrt_weights.asDiagonal() * pose.J;
+    pull_variance += J_weighted.transpose() * second_moment * J_weighted;
   }
-  const double num_residuals = num_poses * static_cast<double>(rows_per_pose);
-  const double lost_to_fit = num_residuals / (num_residuals - 6.0);
-  const Matrix6d covariance = lost_to_fit * curvature_inverse * pull_variance * curvature_inverse;
+  const Matrix6d covariance = curvature_inverse * pull_variance * curvature_inverse;
   return 0.5 * (covariance + covariance.transpose());
 }
 

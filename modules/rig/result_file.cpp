@@ -5,7 +5,7 @@
 
 #include "rig/atomic_file.hpp"
 #include "rig/number_text.hpp"
-#include "rig/rig_sections.hpp"
+#include "rig/transform_yaml.hpp"
 #include "rig/yaml_reader.hpp"
 
 namespace voqcal {

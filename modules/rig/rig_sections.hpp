@@ -9,7 +9,4 @@ namespace voqcal {
 /// `rig->path` is given: folders are relative to it.
 void ReadRigSections(YamlDocument* document, Rig* rig);
 
-/// A transform as {quaternion_xyzw, translation_m}, the quaternion of unit length to 1e-3.
-void ReadTransform(YamlSection* section, Eigen::Isometry3d* T);
-
 }  // namespace voqcal

@@ -132,11 +132,10 @@ YamlSection YamlSection::RequiredSection(const std::string& key) {
   return Section(key);
 }
 
-const YAML::Node* YamlSection::Find(const std::string& key, const std::string& default_text) {
+const YAML::Node* YamlSection::Find(const std::string& key) {
   const auto entry = entries_.find(key);
   const bool is_given = entry != entries_.end();
-  document_->known_keys_.push_back(
-      {PathOf(key), is_given ? entry->second.line : 0, is_required_ ? "" : default_text});
+  document_->known_keys_.push_back({PathOf(key), is_given ? entry->second.line : 0, false, ""});
   if (!is_given) {
     if (is_required_) document_->AddError(line_, PathOf(key) + " is missing");
     is_complete_ = is_complete_ && !is_required_;
@@ -146,9 +145,15 @@ const YAML::Node* YamlSection::Find(const std::string& key, const std::string& d
   return &entry->second.value;
 }
 
+void YamlSection::NoteDefault(const std::string& text) {
+  document_->known_keys_.back().has_default = true;
+  document_->known_keys_.back().default_text = text;
+}
+
 template <typename Value>
 void YamlSection::ReadScalar(const std::string& key, const char* rule, Value* value) {
-  const YAML::Node* node = Find(key, DefaultText(*value));
+  const YAML::Node* node = Find(key);
+  if (!is_required_) NoteDefault(DefaultText(*value));
   if (node == nullptr) return;
   Value parsed{};
   if (!Parse(*node, &parsed)) return AddError(key, rule);
@@ -187,7 +192,7 @@ void YamlSection::Read(const std::string& key, std::string* value) {
 }
 
 void YamlSection::Read(const std::string& key, std::vector<double>* values) {
-  const YAML::Node* node = Find(key, "");
+  const YAML::Node* node = Find(key);
   if (node == nullptr) return;
   if (auto parsed = ParseList(*node)) {
     *values = std::move(*parsed);
@@ -197,7 +202,7 @@ void YamlSection::Read(const std::string& key, std::vector<double>* values) {
 }
 
 void YamlSection::Read(const std::string& key, Eigen::Vector3d* value) {
-  const YAML::Node* node = Find(key, "");
+  const YAML::Node* node = Find(key);
   if (node == nullptr) return;
   const auto parsed = ParseList(*node);
   if (!parsed || parsed->size() != 3) return AddError(key, "must be a list of 3 finite numbers");
@@ -205,7 +210,7 @@ void YamlSection::Read(const std::string& key, Eigen::Vector3d* value) {
 }
 
 void YamlSection::Read(const std::string& key, std::vector<std::vector<double>>* rows) {
-  const YAML::Node* node = Find(key, "");
+  const YAML::Node* node = Find(key);
   if (node == nullptr) return;
   std::vector<std::vector<double>> parsed;
   if (node->IsSequence()) {

@@ -17,7 +17,8 @@ class YamlDocument {
   struct KnownKey {
     std::string path;          ///< "camera.fx_px".
     int line = 0;              ///< Of its value in the file; 0 if it is not given.
-    std::string default_text;  ///< Its value if it is not given; empty for required keys.
+    bool has_default = false;  ///< False for required keys and for lists.
+    std::string default_text;  ///< Its value if it is not given.
   };
 
   /// @param name  what errors call the file.
@@ -96,9 +97,10 @@ class YamlSection {
   YamlSection(YamlDocument* document, YAML::Node node, std::string path, int line);
 
   /// Notes that the key exists; its value, or nullptr if it is not given.
-  const YAML::Node* Find(const std::string& key, const std::string& default_text);
+  const YAML::Node* Find(const std::string& key);
   template <typename Value>
   void ReadScalar(const std::string& key, const char* rule, Value* value);
+  void NoteDefault(const std::string& text);
   std::string PathOf(const std::string& key) const;
   int LineOf(const std::string& key) const;
 

@@ -1,0 +1,143 @@
+#include "rig/result_file.hpp"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include "modules/rig/temporary_folder.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+
+CalibrationResult SomeResult() {
+  CalibrationResult result;
+  result.T_camera_lidar = Eigen::Translation3d(0.1, -1.0 / 3, 1e-17) *
+                          Eigen::AngleAxisd(3.0, Eigen::Vector3d(1, -2, 3).normalized());
+  result.covariance = Matrix6d::Identity() * 1e-6;
+  result.covariance(0, 5) = result.covariance(5, 0) = 1.0 / 7;
+  result.averaged.T_camera_lidar = Eigen::Translation3d(1, 2, 3) * Eigen::Quaterniond::Identity();
+  result.averaged.spread << 1, 2, 3, 4, 5, 6;
+  result.averaged.num_sets = 50;
+  result.averaged.num_kept = 41;
+  result.held_out.centre_mm = {3.5, 1.25, 9};
+  result.used_ids = {1, 3, 4};
+  result.rejected = {{2, "disagrees with \"all\" others:\n26 deg \\ 80 mm"}};
+  result.made_from = {"aa", "bb", "0.1.0"};
+  return result;
+}
+
+TEST(ToYaml, IsReadBackExactly) {
+  const CalibrationResult result = SomeResult();
+  const YAML::Node yaml = YAML::Load(ToYaml(result));
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      EXPECT_EQ(yaml["T_camera_lidar"]["matrix"][i][j].as<double>(),
+                result.T_camera_lidar.matrix()(i, j));
+      EXPECT_EQ(yaml["T_lidar_camera"]["matrix"][i][j].as<double>(),
+                result.T_camera_lidar.inverse().matrix()(i, j));
+    }
+  }
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(yaml["covariance"][i][5].as<double>(), result.covariance(i, 5));
+    EXPECT_EQ(yaml["averaged"]["spread"][i].as<double>(), i + 1);
+  }
+  EXPECT_EQ(yaml["averaged"]["num_sets_kept"].as<int>(), 41);
+  EXPECT_EQ(yaml["lidar_bias"]["status"].as<std::string>(), "not estimated");
+  EXPECT_EQ(yaml["scores"]["held_out"]["centre_mm"]["std"].as<double>(), 1.25);
+  EXPECT_TRUE(std::isnan(yaml["scores"]["in_sample"]["normal_deg"]["max"].as<double>()));
+  EXPECT_EQ(yaml["samples"]["used"].as<std::vector<int>>(), (std::vector<int>{1, 3, 4}));
+  EXPECT_EQ(yaml["samples"]["rejected"][0]["id"].as<int>(), 2);
+  EXPECT_EQ(yaml["samples"]["rejected"][0]["reason"].as<std::string>(),
+            "disagrees with \"all\" others: 26 deg \\ 80 mm");
+  EXPECT_EQ(yaml["made_from"]["rig_sha256"].as<std::string>(), "bb");
+}
+
+TEST(ToYaml, SaysWhereTheTransformLeads) {
+  EXPECT_THAT(ToYaml(SomeResult()),
+              HasSubstr("T_camera_lidar:  # p_camera = T_camera_lidar * p_lidar, metres"));
+}
+
+TEST(ToYaml, GivesAQuaternionOfTheSameRotationWithPositiveW) {
+  const YAML::Node yaml = YAML::Load(ToYaml(SomeResult()));
+  const auto q = yaml["T_camera_lidar"]["quaternion_xyzw"].as<std::vector<double>>();
+  const Eigen::Matrix3d R = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
+  EXPECT_GE(q[3], 0);
+  EXPECT_TRUE(R.isApprox(SomeResult().T_camera_lidar.linear(), 1e-14));
+}
+
+TEST(ToYaml, GivesTheSameBytesEachTime) { EXPECT_EQ(ToYaml(SomeResult()), ToYaml(SomeResult())); }
+
+TEST(ReadExtrinsic, ReadsWhatToYamlWrites) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.Write("extrinsic.yaml", ToYaml(SomeResult()));
+  // The rotation is projected onto SO(3) again: a few roundings.
+  EXPECT_TRUE(ReadExtrinsic(path).isApprox(SomeResult().T_camera_lidar, 1e-14));
+}
+
+/// The error of a file of this text, without its folder.
+std::string ReadError(const std::string& text) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.Write("e.yaml", text);
+  const std::string error = test::ErrorOf([&] { ReadExtrinsic(path); });
+  const std::string prefix = folder.path().string() + "/";
+  return error.rfind(prefix, 0) == 0 ? error.substr(prefix.size()) : error;
+}
+
+TEST(ReadExtrinsic, TakesEitherForm) {
+  const test::TemporaryFolder folder;
+  const Eigen::Isometry3d from_quaternion =
+      ReadExtrinsic(folder.Write("q.yaml",
+                                 "note: any\nT_camera_lidar: {quaternion_xyzw: [0, 0, 0.7071, "
+                                 "0.7071], translation_m: [1, 2, 3]}\n"));
+  const Eigen::Isometry3d from_matrix = ReadExtrinsic(folder.Write(
+      "m.yaml",
+      "T_camera_lidar:\n  matrix: [[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]\n"));
+  EXPECT_TRUE(from_quaternion.isApprox(from_matrix, 1e-15));
+  EXPECT_EQ(from_matrix * Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(1, 3, 3));
+}
+
+TEST(ReadExtrinsic, RefusesWhatIsNotRigid) {
+  const auto error_of_matrix = [](const std::string& rows) {
+    return ReadError("T_camera_lidar:\n  matrix: " + rows + "\n");
+  };
+  EXPECT_EQ(
+      error_of_matrix("[[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 2, 3], [0, 0, 0, 1]]"),
+      "e.yaml:2: T_camera_lidar.matrix must be a rigid transform: R'R is off the identity by 3, "
+      "det R is 2, is a list of 4");
+  EXPECT_THAT(error_of_matrix("[[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, -1, 3], [0, 0, 0, 1]]"),
+              HasSubstr("det R is -1"));
+  EXPECT_THAT(error_of_matrix("[[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 1, 1]]"),
+              HasSubstr("must end with the row 0 0 0 1"));
+  EXPECT_THAT(error_of_matrix("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"),
+              HasSubstr("must be 4 rows of 4"));
+  EXPECT_THAT(error_of_matrix("[[1, 0, 0, x], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]"),
+              HasSubstr("must be a list of rows of finite numbers"));
+  EXPECT_EQ(
+      ReadError("T_camera_lidar: {quaternion_xyzw: [1, 1, 0, 0], translation_m: [0, 0, 0]}"),
+      "e.yaml:1: T_camera_lidar.quaternion_xyzw must be 4 numbers of length 1, is a list of 4");
+}
+
+TEST(ReadExtrinsic, RefusesFormsThatContradictEachOther) {
+  EXPECT_THAT(ReadError("T_camera_lidar:\n"
+                        "  matrix: [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]\n"
+                        "  quaternion_xyzw: [0, 0, 0, 1]\n  translation_m: [1, 2, 4]\n"),
+              HasSubstr("e.yaml:2: T_camera_lidar.matrix must say the same as quaternion_xyzw"));
+}
+
+TEST(ReadExtrinsic, NamesWhatIsMissing) {
+  EXPECT_EQ(ReadError("T_lidar_camera: {}\n"), "e.yaml:1: T_camera_lidar is missing");
+  EXPECT_THAT(
+      ReadError("T_camera_lidar: {translation_m: [0, 0, 0]}\n"),
+      HasSubstr("e.yaml:1: T_camera_lidar must have matrix, or quaternion_xyzw and translation_m"));
+  EXPECT_EQ(ReadError(""), "e.yaml:1: must be one mapping of keys to values, is empty");
+  EXPECT_THAT(test::ErrorOf([] { ReadExtrinsic("/none.yaml"); }),
+              EndsWith("none.yaml: cannot be read: No such file or directory"));
+}
+
+}  // namespace
+}  // namespace voqcal

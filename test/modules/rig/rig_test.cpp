@@ -1,0 +1,202 @@
+#include "rig/rig.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "modules/rig/temporary_folder.hpp"
+#include "rig/sha256.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr char kHead[] = "rig: small\n";
+constexpr char kBoard[] =
+    "board: {width_m: 0.6, height_m: 0.8, square_m: 0.1, num_corners_x: 4, num_corners_y: 6}\n";
+constexpr char kCamera[] =
+    "camera: {lens_model: plumb_bob, width_px: 640, height_px: 480, fx_px: 500, fy_px: 501,\n"
+    "  cx_px: 320, cy_px: 240, distortion: [0.1, 0.2, 0, 0, 0.3]}\n";
+
+std::string Minimal() { return std::string(kHead) + kBoard + kCamera; }  // 4 lines
+
+Rig Load(const std::string& text) {
+  const test::TemporaryFolder folder;
+  return LoadRig(folder.Write("rig.yaml", text));
+}
+
+/// The error without the folder of the file.
+std::string LoadError(const std::string& text) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.Write("rig.yaml", text);
+  std::string error = test::ErrorOf([&] { LoadRig(path); });
+  const std::string prefix = folder.path().string() + "/";
+  for (std::size_t at = 0; (at = error.find(prefix, at)) != std::string::npos;) {
+    error.erase(at, prefix.size());
+  }
+  return error;
+}
+
+TEST(LoadRig, NeedsOnlyNameBoardAndCamera) {
+  const Rig rig = Load(Minimal());
+  EXPECT_EQ(rig.name, "small");
+  EXPECT_EQ(rig.sha256, Sha256OfBytes(Minimal()));
+  EXPECT_EQ(rig.lcm_url, kDefaultRigLcmUrl);
+  EXPECT_EQ(rig.board.num_corners_y, 6);
+  EXPECT_EQ(rig.camera.lens, LensModel::kPlumbBob);
+  EXPECT_EQ(rig.camera.fy_px, 501);
+  EXPECT_EQ(rig.camera.distortion, (std::array<double, 8>{0.1, 0.2, 0, 0, 0.3, 0, 0, 0}));
+  EXPECT_EQ(rig.channels.calib_samples, "CALIB_SAMPLES");
+  EXPECT_EQ(rig.voq_selector.num_sets, VoqOptions().num_sets);
+  // Exactly: a default in radians is not sent through degrees and back.
+  EXPECT_EQ(rig.consistency.max_angle_rad, ConsistencyOptions().max_angle_rad);
+}
+
+TEST(LoadRig, ConvertsDegreesAndPutsThePrefixBeforeEachChannel) {
+  const Rig rig = Load(Minimal() +
+                       "lcm: {channel_prefix: LEFT_}\nchannels: {lidar_points: SWEEPS}\n"
+                       "voq_selector: {consistency: {max_angle_deg: 18}}\n");
+  EXPECT_EQ(rig.channels.lidar_points, "LEFT_SWEEPS");
+  EXPECT_EQ(rig.channels.module_status, "LEFT_MODULE_STATUS");
+  EXPECT_DOUBLE_EQ(rig.consistency.max_angle_rad, 0.1 * M_PI);
+}
+
+TEST(LoadRig, ResolvesFoldersFromItsOwn) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.Write(
+      "rig.yaml",
+      Minimal() + "lidar_driver: {folder: ../clouds}\ncamera_driver: {folder: /data/images}\n");
+  const Rig rig = LoadRig(path);
+  EXPECT_EQ(rig.lidar_driver.folder, folder.path().parent_path() / "clouds");
+  EXPECT_EQ(rig.camera_driver.folder, "/data/images");
+}
+
+TEST(LoadRig, ReadsABoxAndATransform) {
+  const Rig rig = Load(Minimal() +
+                       "lidar_board_detector: {region_of_interest: {min_lidar_m: [1, -2, -3], "
+                       "max_lidar_m: [4, 5, 6]}}\n"
+                       "simulation: {T_camera_lidar: {quaternion_xyzw: [0, 0, 0.7071, 0.7071], "
+                       "translation_m: [1, 2, 3]}}\n");
+  ASSERT_TRUE(rig.lidar_board_detector.region_of_interest);
+  EXPECT_EQ(rig.lidar_board_detector.region_of_interest->max_lidar_m, Eigen::Vector3d(4, 5, 6));
+  // A quarter turn about z, made exact though its file rounds it.
+  const Eigen::Vector3d p = rig.simulation.T_camera_lidar * Eigen::Vector3d::UnitX();
+  EXPECT_TRUE(p.isApprox(Eigen::Vector3d(1, 3, 3), 1e-15)) << p.transpose();
+}
+
+TEST(LoadRig, TakesASectionWhoseOptionsAreAllCommentedOut) {
+  EXPECT_EQ(LoadError(Minimal() + "sample_collector:\n  # num_still_frames: 1\n"), "");
+}
+
+TEST(LoadRig, NamesFileLineKeyRuleAndValue) {
+  const std::string text = Minimal();
+  EXPECT_EQ(LoadError(text + "extrinsic_refiner: {huber_px: soft}\n"),
+            "rig.yaml:5: extrinsic_refiner.huber_px must be a number, is \"soft\"");
+  EXPECT_EQ(LoadError(text + "extrinsic_refiner: {huber_px: \"3\"}\n"),
+            "rig.yaml:5: extrinsic_refiner.huber_px must be a number, is \"3\"");
+  EXPECT_EQ(LoadError(text + "extrinsic_refiner: {huber_px: }\n"),
+            "rig.yaml:5: extrinsic_refiner.huber_px must be a number, is empty");
+  EXPECT_EQ(LoadError(text + "extrinsic_refiner: {max_iterations: 2.5}\n"),
+            "rig.yaml:5: extrinsic_refiner.max_iterations must be a whole number, is \"2.5\"");
+  EXPECT_EQ(LoadError(text + "lidar_driver: {is_repeating: maybe}\n"),
+            "rig.yaml:5: lidar_driver.is_repeating must be true or false, is \"maybe\"");
+  EXPECT_EQ(LoadError(text + "simulation: {seed: -1}\n"),
+            "rig.yaml:5: simulation.seed must be a whole number from 0 to 4294967295, is \"-1\"");
+  EXPECT_EQ(LoadError(text + "lcm: loopback\n"),
+            "rig.yaml:5: lcm must be a section, is \"loopback\"");
+  EXPECT_EQ(LoadError(text + "lidar_driver: {source: tape}\n"),
+            "rig.yaml:5: lidar_driver.source must be folder or simulator, is \"tape\"");
+}
+
+TEST(LoadRig, RefusesWhatIsNotFinite) {
+  for (const char* value : {".nan", ".inf", "-.inf", "nan", "1e999"}) {
+    EXPECT_THAT(
+        LoadError(Minimal() + "voq_selector:\n  consistency:\n    max_distance_m: " + value),
+        AllOf(StartsWith("rig.yaml:7: voq_selector.consistency.max_distance_m must be "),
+              HasSubstr(value)));
+  }
+}
+
+TEST(LoadRig, RefusesUnknownAndRepeatedKeys) {
+  EXPECT_EQ(LoadError(Minimal() + "lidar_board_detector:\n  min_rnage_m: 1\n"),
+            "rig.yaml:6: lidar_board_detector.min_rnage_m is not a known key");
+  EXPECT_EQ(LoadError(Minimal() + "lidar: {}\n"), "rig.yaml:5: lidar is not a known key");
+  EXPECT_EQ(LoadError(Minimal() + "voq_selector:\n  num_sets: 5\n  num_sets: 6\n"),
+            "rig.yaml:7: voq_selector.num_sets is given twice, first on line 6");
+}
+
+TEST(LoadRig, NamesWhatIsMissing) {
+  EXPECT_EQ(LoadError(std::string(kHead) + kCamera), "rig.yaml:1: board is missing");
+  EXPECT_EQ(LoadError(std::string(kHead) + kBoard), "rig.yaml:1: camera is missing");
+  EXPECT_EQ(LoadError(std::string(kBoard) + kCamera), "rig.yaml:1: rig is missing");
+  EXPECT_EQ(LoadError(std::string(kHead) + kCamera +
+                      "board: {width_m: 1, square_m: 0.1, num_corners_x: 4, num_corners_y: 4}\n"),
+            "rig.yaml:4: board.height_m is missing");
+}
+
+TEST(LoadRig, WantsTheLensModelsOwnNumberOfCoefficients) {
+  std::string text = Minimal();
+  text.replace(text.find("plumb_bob"), 9, "equidistant");
+  EXPECT_EQ(LoadError(text),
+            "rig.yaml:4: camera.distortion must be a list of 4 coefficients for lens_model "
+            "equidistant, is a list of 5");
+  text.replace(text.find("equidistant"), 11, "pinhole");
+  EXPECT_EQ(
+      LoadError(text),
+      "rig.yaml:3: camera.lens_model must be equidistant, plumb_bob or rational, is \"pinhole\"");
+}
+
+TEST(LoadRig, ReportsEveryProblemOfEachPart) {
+  const std::string error = LoadError(Minimal() +
+                                      "lidar_driver: {rate_hz: 0}\n"
+                                      "voq_selector: {num_sets: 0}\n"
+                                      "sample_collector:\n  num_still_frames: 0\n"
+                                      "  min_new_angle_deg: -1\n");
+  EXPECT_THAT(error, HasSubstr("rig.yaml:5: lidar_driver: rate_hz must be positive, is 0"));
+  EXPECT_THAT(error, HasSubstr("rig.yaml:6: voq_selector: num_sets"));
+  EXPECT_THAT(error, HasSubstr("rig.yaml:8: sample_collector: num_still_frames"));
+  EXPECT_THAT(error, HasSubstr("rig.yaml:9: sample_collector: min_new_angle_rad"));
+}
+
+TEST(LoadRig, ReportsProblemsOfBoardAndCamera) {
+  std::string text = Minimal();
+  text.replace(text.find("width_m: 0.6"), 12, "width_m: -1 ");
+  text.replace(text.find("fx_px: 500"), 10, "fx_px: -50");
+  EXPECT_THAT(LoadError(text),
+              AllOf(HasSubstr("rig.yaml:2: board: width_m must be positive, is -1"),
+                    HasSubstr("rig.yaml:3: camera: fx_px")));
+}
+
+TEST(LoadRig, RefusesChannelsThatLcmOrTheFlowCannotTellApart) {
+  EXPECT_EQ(LoadError(Minimal() + "channels: {voq_sets: LIDAR_BOARD}\n"),
+            "rig.yaml:5: channels.voq_sets must differ from other channels, is \"LIDAR_BOARD\"");
+  EXPECT_EQ(LoadError(Minimal() + "channels: {voq_sets: \"\"}\n"),
+            "rig.yaml:5: channels.voq_sets must not be empty, is \"\"");
+  EXPECT_THAT(LoadError(Minimal() + "lcm: {channel_prefix: " + std::string(60, 'P') + "}\n"),
+              HasSubstr("must have at most 63 letters"));
+}
+
+TEST(LoadRig, RefusesWhatIsNoRigFile) {
+  EXPECT_EQ(LoadError(""), "rig.yaml:1: must be one mapping of keys to values, is empty");
+  EXPECT_EQ(LoadError("- a\n- b\n"), "rig.yaml:1: must be one mapping of keys to values");
+  EXPECT_EQ(LoadError("a: 1\n---\nb: 2\n"), "rig.yaml:1: must be one mapping of keys to values");
+  EXPECT_THAT(LoadError("rig: x\nboard: [1, 2\n"), StartsWith("rig.yaml:3: is not YAML: "));
+  EXPECT_THAT(LoadError(std::string("\x89PNG\r\n\x1a\n\0\0\xff\xfe", 12)), StartsWith("rig.yaml:"));
+  const test::TemporaryFolder folder;
+  EXPECT_THAT(test::ErrorOf([&] { LoadRig(folder.path() / "none.yaml"); }),
+              EndsWith("none.yaml: cannot be read: No such file or directory"));
+  EXPECT_THAT(test::ErrorOf([&] { LoadRig(folder.path()); }), EndsWith("Is a directory"));
+}
+
+// One mistake, one line: what a user reads on a terminal.
+TEST(LoadRig, SaysOneMistakeInOneLine) {
+  EXPECT_THAT(LoadError("rig: x\nboard: [1, 2\n"), Not(HasSubstr("\n")));
+  EXPECT_THAT(LoadError(std::string(kHead) + kCamera), Not(HasSubstr("\n")));
+}
+
+}  // namespace
+}  // namespace voqcal

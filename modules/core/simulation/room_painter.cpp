@@ -13,10 +13,13 @@ namespace {
 constexpr int kNumSamples = 4;         // along each side of a pixel
 constexpr float kSmoothLevels = 6.0F;  // corners that differ by less are one smooth surface
 
+constexpr double kThinLinesFromM = 3.0;  // the floor's joints are narrower than a pixel from there
+
 struct Look {
   Eigen::Vector3f bgr = Eigen::Vector3f::Zero();
   float range_m = 0.0F;
-  int surface = -1;  // blind
+  int surface = -1;             // blind
+  bool has_thin_lines = false;  // that the pixel's corners may miss
 };
 
 class Viewer {
@@ -32,7 +35,8 @@ class Viewer {
     const double light = LightAt(hit.point_lidar_m, hit.normal_lidar);
     return {static_cast<float>(255.0 * light) * RoomAlbedo(hit),
             static_cast<float>(hit.range_m),
-            hit.surface};
+            hit.surface,
+            hit.material == Material::kFloor && hit.range_m > kThinLinesFromM};
   }
 
  private:
@@ -44,6 +48,7 @@ using Corners = std::array<const Look*, 4>;
 
 bool IsSmooth(const Corners& corners) {
   for (const Look* corner : corners) {
+    if (corner->has_thin_lines) return false;
     if (corner->surface != corners[0]->surface) return false;
     if ((corner->bgr - corners[0]->bgr).cwiseAbs().maxCoeff() > kSmoothLevels) return false;
   }

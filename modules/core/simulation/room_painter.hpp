@@ -15,7 +15,8 @@ struct RoomPicture {
   cv::Mat range_m;  ///< CV_32F: to the nearest of each pixel's corners.
 };
 
-/// Paints the room, anti-aliased: pixels whose corners differ are sampled 4 x 4. Black where the
+/// Paints the room, anti-aliased: pixels whose corners differ, or may miss a thin line, are sampled
+/// 4 x 4. Black where the
 /// lens model cannot be inverted.
 RoomPicture PaintRoom(const Room& room,
                       const CameraModel& camera,

@@ -24,15 +24,24 @@ struct Side {
   Eigen::Vector2d along = Eigen::Vector2d::Zero();
   double half_length_m = 0.0;
   double half_depth_m = 0.0;  ///< From the rectangle's centre to the edge.
+  double blur_m = 0.0;        ///< OutlineModel's blur_k...
+  double grow_m = 0.0;        ///< ...and the grow_k that is expected.
 };
 
 std::array<Side, 4> Sides(const OutlineModel& model) {
   const double x = model.width_m / 2;
   const double y = model.height_m / 2;
-  return {Side{{0, -1}, {1, 0}, x, y},
-          Side{{1, 0}, {0, 1}, y, x},
-          Side{{0, 1}, {-1, 0}, x, y},
-          Side{{-1, 0}, {0, -1}, y, x}};
+  const Eigen::Vector2d stretch = model.Stretch();
+  const Eigen::Vector4d lean = model.SideLean();
+  const Eigen::Vector2d blur_m = model.blur_m * stretch;
+  const Eigen::Vector2d spill_m = model.spill_m * stretch;
+  const auto grow_m = [&](int axis, int side) {
+    return spill_m[axis] + model.thickness_m * lean[side];
+  };
+  return {Side{{0, -1}, {1, 0}, x, y, blur_m.y(), grow_m(1, 3)},
+          Side{{1, 0}, {0, 1}, y, x, blur_m.x(), grow_m(0, 0)},
+          Side{{0, 1}, {-1, 0}, x, y, blur_m.y(), grow_m(1, 2)},
+          Side{{-1, 0}, {0, -1}, y, x, blur_m.x(), grow_m(0, 1)}};
 }
 
 std::vector<NearBeam> BeamsNear(const std::vector<OutlineBeam>& beams,
@@ -52,9 +61,10 @@ std::vector<NearBeam> BeamsNear(const std::vector<OutlineBeam>& beams,
   return near;
 }
 
-/// Fisher scoring of [offset; slope] in p = L((offset + slope * along - outside) / blur).
+/// Fisher scoring of [offset; slope] in p = L((offset + slope * along + grow - outside) / blur).
 Eigen::Vector2d FitLine(const std::vector<NearBeam>& near,
                         const OutlineModel& model,
+                        const Side& side,
                         double window_m) {
   constexpr int kNumIterations = 20;
   const double keep = 1.0 - model.outlier_share;
@@ -65,11 +75,11 @@ Eigen::Vector2d FitLine(const std::vector<NearBeam>& near,
     Eigen::Matrix2d H = Eigen::Vector2d(1 / (window_m * window_m), 1 / 0.01).asDiagonal();
     Eigen::Vector2d g = -H * line;
     for (const NearBeam& beam : near) {
-      const double t = (line[0] + line[1] * beam.along_m - beam.outside_m) / model.blur_m;
+      const double t =
+          (line[0] + line[1] * beam.along_m + side.grow_m - beam.outside_m) / side.blur_m;
       const double L = 1.0 / (1.0 + std::exp(-t));
       const double p_hit = model.outlier_share / 2 + keep * L;
-      const Eigen::Vector2d J =
-          keep * L * (1 - L) / model.blur_m * Eigen::Vector2d(1, beam.along_m);
+      const Eigen::Vector2d J = keep * L * (1 - L) / side.blur_m * Eigen::Vector2d(1, beam.along_m);
       g += J / (beam.is_hit ? p_hit : p_hit - 1.0);
       H += J * J.transpose() / (p_hit * (1.0 - p_hit));
     }
@@ -84,6 +94,7 @@ Eigen::Vector2d FitLine(const std::vector<NearBeam>& near,
 
 OutlineEdge MeasureEdge(const std::vector<NearBeam>& near,
                         const OutlineModel& model,
+                        const Side& side,
                         double window_m) {
   OutlineEdge edge;
   edge.reach_m = -window_m;
@@ -92,10 +103,10 @@ OutlineEdge MeasureEdge(const std::vector<NearBeam>& near,
     if (beam.is_hit) edge.reach_m = std::max(edge.reach_m, beam.outside_m);
   }
   if (edge.num_misses == 0) {  // nothing behind it to show its end: the hits' reach is all there is
-    edge.offset_m = edge.reach_m;
+    edge.offset_m = edge.reach_m - side.grow_m;
     return edge;
   }
-  const Eigen::Vector2d line = FitLine(near, model, window_m);
+  const Eigen::Vector2d line = FitLine(near, model, side, window_m);
   edge.offset_m = line[0];
   edge.slope = line[1];
   return edge;
@@ -112,7 +123,8 @@ std::array<OutlineEdge, 4> MeasureEdges(const std::vector<OutlineBeam>& beams,
   const std::array<Side, 4> sides = Sides(model);
   std::array<OutlineEdge, 4> edges;
   for (std::size_t i = 0; i < 4; ++i) {
-    edges[i] = MeasureEdge(BeamsNear(beams, pose, sides[i], window_m, corner_m), model, window_m);
+    const std::vector<NearBeam> near = BeamsNear(beams, pose, sides[i], window_m, corner_m);
+    edges[i] = MeasureEdge(near, model, sides[i], window_m);
   }
   return edges;
 }

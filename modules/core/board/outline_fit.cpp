@@ -13,54 +13,63 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-double Logistic(double t) { return 1.0 / (1.0 + std::exp(-t)); }
+using Vector5d = Eigen::Matrix<double, 5, 1>;
 
-/// EvaluateOutline with the gradient that RefineOutline climbs.
+/// EvaluateOutline with the gradient that Refine climbs.
 struct Climb {
   OutlineFit fit;
-  Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
+  Vector5d gradient = Vector5d::Zero();
 };
+
+/// What is expected of a parameter: a Gaussian about it.
+void Expect(double value, double mean, double sigma, Eigen::Index row, Climb* climb) {
+  const double surprise = (value - mean) / sigma;
+  climb->fit.log_likelihood -= surprise * surprise / 2;
+  climb->gradient[row] -= surprise / sigma;
+  climb->fit.information(row, row) += 1 / (sigma * sigma);
+}
 
 Climb Differentiate(const std::vector<OutlineBeam>& beams,
                     const OutlineModel& model,
-                    const RectanglePose& pose,
-                    double spill_m) {
+                    const OutlineFit& at) {
   constexpr double kFlat = 14.0;  // L(14) differs from 1 by 1e-6: no slope left
   const double keep = 1.0 - model.outlier_share;
-  const double half_x_m = model.width_m / 2 + spill_m;
-  const double half_y_m = model.height_m / 2 + spill_m;
-  const Eigen::Rotation2Dd R_rectangle_plane(-pose.angle_rad);
-  Climb climb;
-  climb.fit.pose = pose;
-  climb.fit.spill_m = spill_m;
-  const double surprise = (spill_m - model.spill_m) / model.spill_sigma_m;
-  climb.fit.log_likelihood = -surprise * surprise / 2;
-  climb.gradient[3] = -surprise / model.spill_sigma_m;
-  climb.fit.information(3, 3) = 1 / (model.spill_sigma_m * model.spill_sigma_m);
   const double log_far = std::log(model.outlier_share / 2);
   const double log_sure = std::log(1.0 - model.outlier_share / 2);
+  const Eigen::Vector2d stretch = model.Stretch();
+  // Sides: right, left, top, bottom. Distance inside, blur, and what thickness adds.
+  const Eigen::Vector4d side_stretch(stretch.x(), stretch.x(), stretch.y(), stretch.y());
+  const Eigen::Vector4d per_blur = (model.blur_m * side_stretch).cwiseInverse();
+  const Eigen::Vector4d side_lean = model.SideLean();
+  const Eigen::Vector4d half_m =
+      Eigen::Vector4d(model.width_m, model.width_m, model.height_m, model.height_m) / 2 +
+      at.spill_m * side_stretch + at.thickness_m * side_lean;
+  const Eigen::Rotation2Dd R_rectangle_plane(-at.pose.angle_rad);
+  Climb climb;
+  climb.fit.pose = at.pose;
+  climb.fit.spill_m = at.spill_m;
+  climb.fit.thickness_m = at.thickness_m;
+  Expect(at.spill_m, model.spill_m, model.spill_sigma_m, 3, &climb);
+  Expect(at.thickness_m, model.thickness_m, model.thickness_sigma_m, 4, &climb);
   for (const OutlineBeam& beam : beams) {
-    const Eigen::Vector2d q_m = R_rectangle_plane * (beam.position_m - pose.centre_m);
-    const double inside_x = (half_x_m - std::abs(q_m.x())) / model.blur_m;
-    const double inside_y = (half_y_m - std::abs(q_m.y())) / model.blur_m;
-    const double inside = std::min(inside_x, inside_y);
-    if (std::abs(inside) > kFlat) {
-      climb.fit.log_likelihood += (inside > 0) == beam.is_hit ? log_sure : log_far;
+    const Eigen::Vector2d q_m = R_rectangle_plane * (beam.position_m - at.pose.centre_m);
+    const Eigen::Vector4d inside =
+        (half_m - Eigen::Vector4d(q_m.x(), -q_m.x(), q_m.y(), -q_m.y())).cwiseProduct(per_blur);
+    const double least = inside.minCoeff();
+    if (std::abs(least) > kFlat) {
+      climb.fit.log_likelihood += (least > 0) == beam.is_hit ? log_sure : log_far;
       continue;
     }
-    const double right = Logistic((half_x_m - q_m.x()) / model.blur_m);
-    const double left = Logistic((half_x_m + q_m.x()) / model.blur_m);
-    const double top = Logistic((half_y_m - q_m.y()) / model.blur_m);
-    const double bottom = Logistic((half_y_m + q_m.y()) / model.blur_m);
-    const double product = right * left * top * bottom;
-    const double p_hit = model.outlier_share / 2 + keep * product;
-    // d product / d q, then q changes by -[1 0; 0 1] with the centre and by (y, -x) with the angle.
-    const double slope_x = product * (right - left) / model.blur_m;
-    const double slope_y = product * (top - bottom) / model.blur_m;
-    const double slope_spill = product * (4 - right - left - top - bottom) / model.blur_m;
-    const Eigen::Vector4d J =
-        keep *
-        Eigen::Vector4d(-slope_x, -slope_y, slope_x * q_m.y() - slope_y * q_m.x(), slope_spill);
+    const Eigen::Vector4d L = (1.0 + (-inside.array()).exp()).inverse();
+    const double p_hit = model.outlier_share / 2 + keep * L.prod();
+    // d p / d (distance inside each side), then: the centre and the angle move q by -(1, 0), -(0,
+    // 1) and (y, -x).
+    const Eigen::Vector4d slope = keep * L.prod() * (1.0 - L.array()) * per_blur.array();
+    const double slope_x = slope[1] - slope[0];
+    const double slope_y = slope[3] - slope[2];
+    Vector5d J;
+    J << -slope_x, -slope_y, slope_x * q_m.y() - slope_y * q_m.x(), slope.dot(side_stretch),
+        slope.dot(side_lean);
     climb.fit.log_likelihood += std::log(beam.is_hit ? p_hit : 1.0 - p_hit);
     climb.gradient += J / (beam.is_hit ? p_hit : p_hit - 1.0);
     climb.fit.information += J * J.transpose() / (p_hit * (1.0 - p_hit));
@@ -68,35 +77,47 @@ Climb Differentiate(const std::vector<OutlineBeam>& beams,
   return climb;
 }
 
-RectanglePose Moved(const RectanglePose& pose, const Eigen::Vector4d& step) {
-  const Eigen::Rotation2Dd R_plane_rectangle(pose.angle_rad);
-  return {pose.centre_m + R_plane_rectangle * step.head<2>(), pose.angle_rad + step[2]};
+OutlineFit Moved(const OutlineFit& from, const Vector5d& step) {
+  OutlineFit to = from;
+  to.pose.centre_m += Eigen::Rotation2Dd(from.pose.angle_rad) * step.head<2>();
+  to.pose.angle_rad += step[2];
+  to.spill_m += step[3];
+  to.thickness_m += step[4];
+  return to;
 }
 
 OutlineFit Refine(const std::vector<OutlineBeam>& beams,
                   const OutlineModel& model,
-                  const RectanglePose& start,
-                  double start_spill_m,
+                  const OutlineFit& start,
                   int max_iterations) {
-  constexpr double kSmallStep = 1e-6;  // metres and radians: a thousandth of what matters
+  constexpr double kSmallStep = 1e-5;  // metres and radians: a hundredth of what matters
+  constexpr double kMaxDamping = 1e3;
   double damping = 1e-3;
-  Climb best = Differentiate(beams, model, start, start_spill_m);
+  Climb best = Differentiate(beams, model, start);
   for (int i = 0; i < max_iterations; ++i) {
-    Eigen::Matrix4d H = best.fit.information;
-    H.diagonal() += damping * H.diagonal() + Eigen::Vector4d::Constant(1e-6);
-    const Eigen::Vector4d step = H.ldlt().solve(best.gradient);
+    Matrix5d H = best.fit.information;
+    H.diagonal() += damping * H.diagonal() + Vector5d::Constant(1e-6);
+    const Vector5d step = H.ldlt().solve(best.gradient);
     if (!step.allFinite()) break;
-    const Climb next =
-        Differentiate(beams, model, Moved(best.fit.pose, step), best.fit.spill_m + step[3]);
+    const Climb next = Differentiate(beams, model, Moved(best.fit, step));
     if (next.fit.log_likelihood > best.fit.log_likelihood) {
       best = next;
       damping = std::max(damping / 10, 1e-6);
     } else {
       damping *= 10;
     }
-    if (step.norm() < kSmallStep) break;
+    if (step.norm() < kSmallStep || damping > kMaxDamping) break;
   }
   return best.fit;
+}
+
+/// As expected before any beam was looked at.
+OutlineFit StartAt(const OutlineModel& model, const RectanglePose& pose) {
+  OutlineFit start;
+  start.pose = pose;
+  start.spill_m = model.spill_m;
+  start.thickness_m = model.thickness_m;
+  return start;
 }
 
 /// Every n-th beam, so that about `max_num` are left.
@@ -119,9 +140,8 @@ Eigen::Matrix3d OutlineFit::PoseCovariance() const {
 
 OutlineFit EvaluateOutline(const std::vector<OutlineBeam>& beams,
                            const OutlineModel& model,
-                           const RectanglePose& pose,
-                           double spill_m) {
-  return Differentiate(beams, model, pose, spill_m).fit;
+                           const OutlineFit& at) {
+  return Differentiate(beams, model, at).fit;
 }
 
 OutlineFit RefineOutline(const std::vector<OutlineBeam>& beams,
@@ -130,8 +150,8 @@ OutlineFit RefineOutline(const std::vector<OutlineBeam>& beams,
   constexpr int kMaxIterations = 30;
   OutlineModel wide = model;
   wide.blur_m = 2 * model.blur_m;
-  const OutlineFit near = Refine(beams, wide, start, model.spill_m, kMaxIterations / 3);
-  return Refine(beams, model, near.pose, near.spill_m, kMaxIterations);
+  const OutlineFit near = Refine(beams, wide, StartAt(model, start), kMaxIterations / 3);
+  return Refine(beams, model, near, kMaxIterations);
 }
 
 OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
@@ -146,11 +166,11 @@ OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
   OutlineFit best;
   for (int i = 0; i < kNumAngles; ++i) {
     const OutlineFit fit =
-        Refine(few, wide, {centre_m, kPi * i / kNumAngles}, model.spill_m, kNumSteps);
+        Refine(few, wide, StartAt(model, {centre_m, kPi * i / kNumAngles}), kNumSteps);
     if (i == 0 || fit.log_likelihood > best.log_likelihood) best = fit;
   }
   wide.blur_m = std::sqrt(wide.blur_m * model.blur_m);
-  return Refine(beams, wide, best.pose, model.spill_m, 2 * kNumSteps);
+  return Refine(beams, wide, best, 2 * kNumSteps);
 }
 
 }  // namespace voqcal

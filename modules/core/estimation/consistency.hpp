@@ -18,7 +18,7 @@ struct ConsistencyOptions {
 /// A sample that does not fit the others, and why.
 struct InconsistentSample {
   int sample = 0;      ///< Index into the samples.
-  std::string reason;  ///< "disagrees with 28 of 29 others: ...", for logs and reports.
+  std::string reason;  ///< "disagrees with 28 of 29 consistent samples; ...", for people.
 };
 
 /// Which samples hold together. Distances between the centres of two poses and angles between their
@@ -27,6 +27,11 @@ struct Consistency {
   std::vector<int> consistent;  ///< Ascending indices of a largest subset that agrees pairwise.
   std::vector<InconsistentSample> inconsistent;
 };
+
+/// The largest subset whose pairs all agree, as far as growing one from each sample finds it; fewer
+/// than three samples cannot be judged and are all taken for consistent. The order of samples only
+/// breaks ties.
+/// @throws std::invalid_argument if `options` has Problems().
 Consistency FindConsistent(const std::vector<BoardSample>& samples,
                            const ConsistencyOptions& options);
 

@@ -252,7 +252,9 @@ RefinedExtrinsic RefineExtrinsic(const std::vector<const BoardSample*>& samples,
     refined.status = RefineStatus::kDegenerate;
     return refined;
   }
-  refined.covariance = PooledSandwich(linear, curvature_inverse);
+  const Eigen::Index num_residuals =
+      static_cast<Eigen::Index>(samples.size()) * linear.poses.front().r.size();
+  if (num_residuals > 6) refined.covariance = PooledSandwich(linear, curvature_inverse);
   refined.status = RefineStatus::kConverged;
   return refined;
 }

@@ -43,6 +43,13 @@ struct RefinedExtrinsic {
 
 /// Refines `T_camera_lidar_start` over every pose: robust reprojection of each pose's lidar centre
 /// and corners against the camera's. Corners are matched up to the board's half-turn by the start.
+///
+/// kDegenerate: fewer than three samples, or parameters that the poses leave open. kNotConverged: a
+/// point of a board out of the camera's sight at the start or the end, or out of iterations; the
+/// transform is then the start. The covariance is measured by the residuals themselves, correlated
+/// within a pose: what is alike in all poses (a range offset, say) does not show in it. With no
+/// more residuals than parameters it is NaN.
+/// @throws std::invalid_argument if `options` has Problems().
 RefinedExtrinsic RefineExtrinsic(const std::vector<const BoardSample*>& samples,
                                  const CameraModel& camera,
                                  const Eigen::Isometry3d& T_camera_lidar_start,

@@ -154,6 +154,16 @@ TEST(RefineExtrinsic, CovarianceIsTheSpreadOfManyTrials) {
   }
 }
 
+TEST(RefineExtrinsic, ClaimsNoCovarianceWithoutRedundancy) {
+  auto scene = Noisy(1.0);
+  scene.num_samples = 3;
+  RefineOptions centres_only;
+  centres_only.corner_weight = 0.0;  // six residuals, six parameters: they fit exactly
+  const RefinedExtrinsic refined = Refine(test::SynthesizeSamples(scene), centres_only);
+  EXPECT_EQ(refined.status, RefineStatus::kConverged);
+  EXPECT_TRUE(refined.covariance.array().isNaN().all());
+}
+
 TEST(RefineExtrinsic, DoesNotDependOnTheStart) {
   const auto samples = test::SynthesizeSamples(Noisy(1.0));
   const auto from_rough = Refine(samples);

@@ -1,0 +1,91 @@
+#include "messaging/process.hpp"
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace voqcal {
+namespace {
+
+using testing::HasSubstr;
+
+struct Outcome {
+  int status = -1;
+  std::string out;
+  std::string err;
+  bool has_run = false;
+  ProcessArgs args;
+};
+
+/// RunProcess of "detector" with these flags; `cause` is what its body throws, if not empty.
+Outcome RunWith(std::vector<const char*> flags, const std::string& cause = "") {
+  flags.insert(flags.begin(), "/somewhere/detector");
+  Outcome run;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  run.status = RunProcess(static_cast<int>(flags.size()),
+                          flags.data(),
+                          {"detector", "Finds things."},
+                          [&](const ProcessArgs& args) {
+                            run.has_run = true;
+                            run.args = args;
+                            if (!cause.empty()) throw std::runtime_error(cause);
+                          });
+  run.out = testing::internal::GetCapturedStdout();
+  run.err = testing::internal::GetCapturedStderr();
+  return run;
+}
+
+TEST(RunProcess, HandsOverTheFlags) {
+  const Outcome run = RunWith({"--rig", "a.yaml", "--lcm-url", "memq://", "--session", "s"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.args.rig_path, "a.yaml");
+  EXPECT_EQ(run.args.lcm_url, "memq://");
+  EXPECT_EQ(run.args.session_dir, "s");
+  EXPECT_FALSE(run.args.is_verbose);
+}
+
+TEST(RunProcess, LeavesOptionalFlagsOut) {
+  const Outcome run = RunWith({"--rig", "a.yaml", "--verbose"});
+  EXPECT_FALSE(run.args.lcm_url);
+  EXPECT_FALSE(run.args.session_dir);
+  EXPECT_TRUE(run.args.is_verbose);
+}
+
+TEST(RunProcess, AnswersAnExceptionInOneLineWithStatus1) {
+  const Outcome run = RunWith({"--rig", "a.yaml"}, "a.yaml:3: board:\n  width is missing\n");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err, "detector: a.yaml:3: board:   width is missing\n");
+}
+
+TEST(RunProcess, AnswersWrongFlagsWithStatus2) {
+  for (const auto& flags : std::vector<std::vector<const char*>>{
+           {}, {"--rig"}, {"--rig", "a.yaml", "--speed", "9"}, {"--rig", "a.yaml", "b.yaml"}}) {
+    const Outcome run = RunWith(flags);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_FALSE(run.has_run);
+    EXPECT_THAT(run.err, HasSubstr("detector: "));
+  }
+}
+
+TEST(RunProcess, ExplainsItself) {
+  const Outcome help = RunWith({"--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_FALSE(help.has_run);
+  EXPECT_THAT(help.out, HasSubstr("Finds things."));
+  EXPECT_THAT(help.out, HasSubstr("--rig FILE"));
+  const Outcome version = RunWith({"--version"});
+  EXPECT_EQ(version.status, 0);
+  EXPECT_THAT(version.out, testing::StartsWith("0."));
+}
+
+TEST(OneLine, JoinsLines) {
+  EXPECT_EQ(OneLine("a\n\nb\r\nc\n"), "a b c");
+  EXPECT_EQ(OneLine(""), "");
+}
+
+}  // namespace
+}  // namespace voqcal

@@ -43,9 +43,10 @@ std::vector<Eigen::Vector3d> SearchedPoints(const std::vector<LidarBeam>& beams,
 PatchSearchOptions PatchesOf(const BoardSpec& board) {
   PatchSearchOptions search;
   const double shorter_m = std::min(board.width_m, board.height_m);
+  const double longer_m = std::max(board.width_m, board.height_m);
   search.voxel_m = shorter_m / 4;
-  search.min_spread_m = shorter_m / 8;  // a full rectangle spreads by 1 / sqrt(12) of its side
-  search.max_radius_m = std::hypot(board.width_m, board.height_m);
+  search.spread_m = Eigen::Vector2d(shorter_m, longer_m) / std::sqrt(12.0);  // of a full rectangle
+  search.max_radius_m = std::hypot(shorter_m, longer_m);
   search.min_points = kMinPoints;
   return search;
 }

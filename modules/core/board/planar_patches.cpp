@@ -176,12 +176,19 @@ PlanarPatch Describe(const std::vector<std::size_t>& members, const Grid& grid) 
   return patch;
 }
 
+/// How far the patch's spread is from that looked for, as a factor's logarithm.
+double Unlikeness(const PlanarPatch& patch, const PatchSearchOptions& options) {
+  const double shorter = std::abs(std::log(patch.plane.spread_m[1] / options.spread_m[0]));
+  const double longer = std::abs(std::log(patch.plane.spread_m[2] / options.spread_m[1]));
+  return std::max(shorter, longer);
+}
+
 bool HasBoardSize(const PlanarPatch& patch,
                   const std::vector<std::size_t>& members,
                   const Grid& grid,
                   const PatchSearchOptions& options) {
   if (patch.num_points < options.min_points) return false;
-  if (patch.plane.spread_m[1] < options.min_spread_m) return false;
+  if (Unlikeness(patch, options) > std::log(2.0)) return false;
   return std::all_of(members.begin(), members.end(), [&](std::size_t i) {
     return (grid.cells[i].mean_m - patch.middle_m).norm() <= options.max_radius_m;
   });
@@ -201,8 +208,8 @@ std::vector<PlanarPatch> FindPlanarPatches(const std::vector<Eigen::Vector3d>& p
     const PlanarPatch patch = Describe(members, grid);
     if (HasBoardSize(patch, members, grid, options)) patches.push_back(patch);
   }
-  std::stable_sort(patches.begin(), patches.end(), [](const auto& a, const auto& b) {
-    return a.num_points > b.num_points;
+  std::stable_sort(patches.begin(), patches.end(), [&](const auto& a, const auto& b) {
+    return Unlikeness(a, options) < Unlikeness(b, options);
   });
   return patches;
 }

@@ -10,10 +10,12 @@ namespace voqcal {
 
 /// What counts as a patch.
 struct PatchSearchOptions {
-  double voxel_m = 0.15;       ///< Side of the cells that a patch is grown from.
-  double band_m = 0.045;       ///< A cell belongs to a patch if its mean is this near its plane.
-  double min_spread_m = 0.08;  ///< Least spread (1 sigma) along the patch's shorter axis.
-  double max_radius_m = 1.0;   ///< Patches that reach farther from their middle are walls or floor.
+  double voxel_m = 0.15;  ///< Side of the cells that a patch is grown from.
+  double band_m = 0.045;  ///< A cell belongs to a patch if its mean is this near its plane.
+  /// Spread (1 sigma) that is looked for along the shorter and the longer axis; patches with less
+  /// than half of it or more than twice as much are something else.
+  Eigen::Vector2d spread_m = Eigen::Vector2d(0.18, 0.25);
+  double max_radius_m = 1.0;  ///< Patches that reach farther from their middle are walls or floor.
   int min_points = 30;
 };
 

@@ -17,6 +17,8 @@
 namespace voqcal {
 namespace {
 
+constexpr std::size_t kMinHits = 30;  // fewer cannot measure a board
+
 /// The beam across, measured on 30 sweeps of a VLP-16 (1.7 to 3.2 m): hits end 5 mm past the edge
 /// whatever the range, and beams turn from hit to miss within 3 to 4 mm. Doubling or halving any of
 /// these moves the centres by less than 1 mm.
@@ -85,34 +87,39 @@ Measurement Begin(const PlanarPatch& patch,
   return m;
 }
 
-/// Plane and outline in turn: the outline says which points are the board's, and the plane where
-/// the beams meet it. False if too few points are left.
-bool Refine(Measurement* m) {
-  constexpr int kNumRounds = 3;
-  constexpr std::size_t kMinHits = 30;
+/// Plane, then outline: the outline says which points are the board's, and the plane where the
+/// beams meet it. False if too few points are left.
+bool RefineOnce(Measurement* m) {
   constexpr double kPlaneScaleM = 0.02;  // Cauchy: twice the noise
   constexpr double kMarginM = -0.005;    // the outermost returns are partly of what lies behind
-  for (int round = 0; round < kNumRounds; ++round) {
-    m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, kMarginM);
-    if (m->board_hits.size() < kMinHits) return false;
-    const Eigen::Isometry3d T_lidar_board = TransformOf(m->frame, m->outline.pose);
-    const Eigen::Vector3d centre_m = T_lidar_board.translation();
-    const Eigen::Vector3d width_axis = T_lidar_board.linear().col(0);
-    PlaneFit plane =
-        FitPlaneRobustly(m->view.PositionsM(m->board_hits), m->frame.plane, kPlaneScaleM);
-    plane.point_m = centre_m - plane.DistanceM(centre_m) * plane.normal;
-    m->frame = PlaneFrame(plane);
-    m->view.Classify(m->frame);
-    const double angle_rad = std::atan2(m->frame.e2.dot(width_axis), m->frame.e1.dot(width_axis));
-    const RectanglePose start{Eigen::Vector2d::Zero(), angle_rad};
-    m->model.lean = LeanOf(m->frame, start);
-    m->outline = RefineOutline(m->view.Outline(), m->model, start);
-  }
+  m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, kMarginM);
+  if (m->board_hits.size() < kMinHits) return false;
+  const Eigen::Isometry3d T_lidar_board = TransformOf(m->frame, m->outline.pose);
+  const Eigen::Vector3d centre_m = T_lidar_board.translation();
+  const Eigen::Vector3d width_axis = T_lidar_board.linear().col(0);
+  PlaneFit plane =
+      FitPlaneRobustly(m->view.PositionsM(m->board_hits), m->frame.plane, kPlaneScaleM);
+  plane.point_m = centre_m - plane.DistanceM(centre_m) * plane.normal;
+  m->frame = PlaneFrame(plane);
+  m->view.Classify(m->frame);
+  const double angle_rad = std::atan2(m->frame.e2.dot(width_axis), m->frame.e1.dot(width_axis));
+  const RectanglePose start{Eigen::Vector2d::Zero(), angle_rad};
+  m->model.lean = LeanOf(m->frame, start);
+  m->outline = RefineOutline(m->view.Outline(), m->model, start);
+  return true;
+}
+
+/// Turns the rectangle upright and takes all its points. False if too few are left.
+bool Finish(Measurement* m) {
   m->outline.pose = Upright(m->frame, m->outline.pose);
   m->model.lean = LeanOf(m->frame, m->outline.pose);
   m->outline = EvaluateOutline(m->view.Outline(), m->model, m->outline);
   m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, 0.0);
   return m->board_hits.size() >= kMinHits;
+}
+
+Agreement AgreementOf(const Measurement& m) {
+  return Compare(m.view.Outline(), m.model, m.outline.pose);
 }
 
 std::vector<std::uint16_t> RingsOf(const Measurement& m, const PointCloud& cloud_lidar_m) {
@@ -192,14 +199,16 @@ Expected<LidarBoard, LidarBoardMiss> MeasureBoard(const PlanarPatch& patch,
                                                   const std::vector<LidarBeam>& beams,
                                                   const PointCloud& cloud_lidar_m,
                                                   const BoardSpec& board) {
+  constexpr int kNumRounds = 3;
   constexpr double kRoughly = 2.0;
   constexpr double kMinCovered = 0.8;
   Measurement m = Begin(patch, beams, board);
-  if (!Compare(m.view.Outline(), m.model, m.outline.pose).IsBoardLike(kRoughly)) {
-    return LidarBoardMiss::kSizeMismatch;
+  for (int round = 0; round < kNumRounds; ++round) {
+    if (!AgreementOf(m).IsBoardLike(kRoughly)) return LidarBoardMiss::kSizeMismatch;
+    if (!RefineOnce(&m)) return LidarBoardMiss::kNoPlane;
   }
-  if (!Refine(&m)) return LidarBoardMiss::kNoPlane;
-  const Agreement agreement = Compare(m.view.Outline(), m.model, m.outline.pose);
+  if (!Finish(&m)) return LidarBoardMiss::kNoPlane;
+  const Agreement agreement = AgreementOf(m);
   if (!agreement.IsBoardLike()) return LidarBoardMiss::kSizeMismatch;
   const std::array<OutlineEdge, 4> edges = MeasureEdges(m.view.Outline(), m.model, m.outline.pose);
   const bool is_closed = std::all_of(edges.begin(), edges.end(), IsSeen);

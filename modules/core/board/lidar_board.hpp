@@ -12,7 +12,8 @@
 
 namespace voqcal {
 
-/// A box in the lidar frame, metres; points outside are not looked at.
+/// A box in the lidar frame, metres: the board is searched inside. Points outside only show where
+/// it ends.
 struct RegionOfInterest {
   Eigen::Vector3d min_lidar_m = Eigen::Vector3d::Constant(-1e9);
   Eigen::Vector3d max_lidar_m = Eigen::Vector3d::Constant(1e9);

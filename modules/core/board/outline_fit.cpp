@@ -120,6 +120,20 @@ OutlineFit StartAt(const OutlineModel& model, const RectanglePose& pose) {
   return start;
 }
 
+/// The beams within `reach_m` of the sides of the rectangle: the others do not move it.
+std::vector<OutlineBeam> BeamsNearSides(const std::vector<OutlineBeam>& beams,
+                                        const OutlineModel& model,
+                                        const RectanglePose& pose,
+                                        double reach_m) {
+  const Eigen::Array2d half_m(model.width_m / 2, model.height_m / 2);
+  std::vector<OutlineBeam> near;
+  for (const OutlineBeam& beam : beams) {
+    const double outside_m = (pose.ToRectangle(beam.position_m).array().abs() - half_m).maxCoeff();
+    if (std::abs(outside_m) < reach_m) near.push_back(beam);
+  }
+  return near;
+}
+
 /// Every n-th beam, so that about `max_num` are left.
 std::vector<OutlineBeam> Thinned(const std::vector<OutlineBeam>& beams, std::size_t max_num) {
   const std::size_t stride = beams.size() / max_num + 1;
@@ -147,11 +161,14 @@ OutlineFit EvaluateOutline(const std::vector<OutlineBeam>& beams,
 OutlineFit RefineOutline(const std::vector<OutlineBeam>& beams,
                          const OutlineModel& model,
                          const RectanglePose& start) {
-  constexpr int kMaxIterations = 30;
+  constexpr int kMaxWideIterations = 8;
+  constexpr int kMaxIterations = 15;
+  const double reach_m = std::min(model.width_m, model.height_m) / 5;
+  const std::vector<OutlineBeam> near = BeamsNearSides(beams, model, start, reach_m);
   OutlineModel wide = model;
   wide.blur_m = 2 * model.blur_m;
-  const OutlineFit near = Refine(beams, wide, StartAt(model, start), kMaxIterations / 3);
-  return Refine(beams, model, near, kMaxIterations);
+  const OutlineFit rough = Refine(near, wide, StartAt(model, start), kMaxWideIterations);
+  return EvaluateOutline(beams, model, Refine(near, model, rough, kMaxIterations));
 }
 
 OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
@@ -160,6 +177,7 @@ OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
   constexpr int kNumAngles = 6;  // over half a turn: 30 degrees, within reach of the wide blur
   constexpr int kNumSteps = 5;
   constexpr std::size_t kNumBeams = 250;
+  constexpr std::size_t kNumFineBeams = 1000;
   const std::vector<OutlineBeam> few = Thinned(beams, kNumBeams);
   OutlineModel wide = model;
   wide.blur_m = std::max(model.blur_m, std::min(model.width_m, model.height_m) / 12);
@@ -170,7 +188,7 @@ OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
     if (i == 0 || fit.log_likelihood > best.log_likelihood) best = fit;
   }
   wide.blur_m = std::sqrt(wide.blur_m * model.blur_m);
-  return Refine(beams, wide, best, 2 * kNumSteps);
+  return Refine(Thinned(beams, kNumFineBeams), wide, best, kNumSteps);
 }
 
 }  // namespace voqcal

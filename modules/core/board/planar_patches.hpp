@@ -22,13 +22,13 @@ struct PatchSearchOptions {
 /// A connected planar piece of the scene.
 struct PlanarPatch {
   PlaneFit plane;
-  Eigen::Vector3d middle_m =
-      Eigen::Vector3d::Zero();  ///< Mean of its cells: free of point density.
+  /// Mean of its cells' means, which the points' density does not shift.
+  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
   int num_points = 0;
 };
 
-/// The planar patches of about a board's size, those with most points first. The points' order
-/// matters by rounding only.
+/// The planar patches of about a board's size, those with the likest spread first. The points'
+/// order matters by rounding only.
 std::vector<PlanarPatch> FindPlanarPatches(const std::vector<Eigen::Vector3d>& points_m,
                                            const PatchSearchOptions& options);
 

@@ -41,7 +41,7 @@ bool AssessorNode::Step() {
     return false;
   if (assessment_ && assessment_->samples_revision == revision) return false;
   Assess();
-  Count(problem().empty() ? "assessments" : problem());
+  Count(problem().empty() ? "assessments" : "without a result");
   Republish();
   return false;
 }

@@ -23,7 +23,7 @@ bool ExtrinsicEstimatorNode::Step() {
   if (!samples_ || !sets_ || samples_->revision != sets_->samples_revision) return false;
   if (result_ && result_->samples_revision == samples_->revision) return false;
   result_ = Estimate();
-  Count(result_->problem.empty() ? "estimates" : result_->problem);
+  Count(result_->problem.empty() ? "estimates" : "without a result");
   Republish();
   return false;
 }

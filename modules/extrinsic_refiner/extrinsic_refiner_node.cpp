@@ -24,7 +24,7 @@ bool ExtrinsicRefinerNode::Step() {
   if (!samples_ || !averaged_ || samples_->revision != averaged_->samples_revision) return false;
   if (result_ && result_->samples_revision == samples_->revision) return false;
   result_ = Refine();
-  Count(result_->problem.empty() ? "refinements" : result_->problem);
+  Count(result_->problem.empty() ? "refinements" : "without a result");
   Republish();
   return false;
 }

@@ -25,7 +25,7 @@ std::string VoqSelectorNode::State() const {
 bool VoqSelectorNode::Step() {
   if (!samples_ || (result_ && result_->samples_revision == samples_->revision)) return false;
   result_ = Select(*samples_);
-  Count(result_->problem.empty() ? "selections" : result_->problem);
+  Count(result_->problem.empty() ? "selections" : "without a result");
   Republish();
   return false;
 }

@@ -1,41 +1,90 @@
-// command: tells the sample collector what to do.
+// command: tells the sample collector of a running rig what to do.
 
 #include <chrono>
+#include <cstdio>
+#include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "common/tool_main.hpp"
 #include "messaging/bus.hpp"
 #include "rig/rig.hpp"
+#include "voqcal/assessment_t.hpp"
 #include "voqcal/command_t.hpp"
+#include "voqcal/samples_t.hpp"
 
 namespace voqcal {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 struct CommandArgs {
   std::filesystem::path rig;
   std::optional<std::string> lcm_url;
   std::string command;
   std::int64_t sample_id = 0;
+  double wait_s = 0;
 };
 
-void Send(const CommandArgs& args) {
-  const Rig rig = LoadRig(args.rig);
-  Bus bus(args.lcm_url.value_or(rig.lcm_url));
+void Send(const CommandArgs& args, const Rig& rig, Bus* bus) {
   command_t message{};
   message.utime = std::chrono::duration_cast<std::chrono::microseconds>(
                       std::chrono::system_clock::now().time_since_epoch())
                       .count();
   message.command = args.command;
   message.sample_id = args.sample_id;
-  bus.Publish(rig.channels.calib_command, message);
+  bus->Publish(rig.channels.calib_command, message);
+}
+
+// Until the collector says "finished" and the assessor has judged that very set of samples. The
+// command is sent again each second: it may have been lost.
+void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
+  samples_t samples{};
+  assessment_t assessment{};
+  assessment.samples_revision = -1;
+  bus->Subscribe<samples_t>(
+      rig.channels.calib_samples, Queue::kLatest, [&samples](const samples_t& m) { samples = m; });
+  bus->Subscribe<assessment_t>(rig.channels.calib_assessment,
+                               Queue::kLatest,
+                               [&assessment](const assessment_t& m) { assessment = m; });
+  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                   std::chrono::duration<double>(args.wait_s));
+  Clock::time_point next_send = Clock::now();
+  while (samples.is_finished == 0 || assessment.samples_revision != samples.revision) {
+    if (Clock::now() > end) {
+      throw std::runtime_error(samples.is_finished == 0
+                                   ? "the sample collector did not answer: is the rig running?"
+                                   : "the assessor did not answer: is it running?");
+    }
+    if (samples.is_finished == 0 && Clock::now() >= next_send) {
+      Send(args, rig, bus);
+      next_send = Clock::now() + std::chrono::seconds(1);
+    }
+    bus->HandleOnce(std::chrono::milliseconds(100));
+  }
+  if (!assessment.problem.empty())
+    throw std::runtime_error("no calibration: " + assessment.problem);
+  std::printf("%d samples, held-out centre error %.2f mm mean\n",
+              assessment.num_samples,
+              assessment.refined_held_out.centre_mm.mean);
+}
+
+void Command(const CommandArgs& args) {
+  const Rig rig = LoadRig(args.rig);
+  Bus bus(args.lcm_url.value_or(rig.lcm_url));
+  if (args.command == "finish" && args.wait_s > 0) {
+    FinishAndWait(args, rig, &bus);
+  } else {
+    Send(args, rig, &bus);
+  }
 }
 
 }  // namespace
 }  // namespace voqcal
 
 int main(int argc, char** argv) {
-  CLI::App app("Sends one command to the sample collector.", "command");
+  CLI::App app("Sends one command to the sample collector of a running rig.", "command");
   voqcal::CommandArgs args;
   app.add_option("command",
                  args.command,
@@ -44,7 +93,10 @@ int main(int argc, char** argv) {
       ->required()
       ->check(CLI::IsMember({"capture", "discard", "finish", "reset"}));
   app.add_option("--sample", args.sample_id, "Which sample to discard; without it the newest");
+  app.add_option(
+         "--wait", args.wait_s, "After finish: wait for the result, at most this many seconds")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--rig", args.rig, "The rig file (YAML)")->required();
   app.add_option("--lcm-url", args.lcm_url, "Instead of the rig file's");
-  return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Send(args); });
+  return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Command(args); });
 }

@@ -124,7 +124,8 @@ int main(int argc, char** argv) {
   app.add_option("session", args.session, "The session's folder")->required();
   app.add_option("--rig", args.rig, "The rig file (YAML): camera and channels")->required();
   app.add_option("--out", args.out, "The log to write")->required();
-  app.add_option("--rate", args.rate_hz, "Poses a second when the log is replayed", true)
+  app.add_option("--rate", args.rate_hz, "Poses a second when the log is replayed")
+      ->capture_default_str()
       ->check(CLI::PositiveNumber);
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Import(args); });
 }

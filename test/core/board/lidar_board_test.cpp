@@ -61,8 +61,8 @@ TEST(DetectLidarBoard, FindsBoardInCleanSweep) {
 
 TEST(DetectLidarBoard, FindsBoardAtManyPoses) {
   SyntheticLidarBoardOptions scene;
-  for (const double roll_deg : {-50.0, 35.0, 60.0}) {
-    for (const double tilt_deg : {-35.0, 0.0, 35.0}) {
+  for (const double roll_deg : {-50.0, 35.0}) {
+    for (const double tilt_deg : {-35.0, 35.0}) {
       for (const double x_m : {1.8, 2.6, 3.4}) {
         SCOPED_TRACE(testing::Message() << roll_deg << ' ' << tilt_deg << ' ' << x_m);
         scene.T_lidar_board = FacingBoard({x_m, -0.3 * x_m, -0.1}, roll_deg, tilt_deg);
@@ -75,7 +75,7 @@ TEST(DetectLidarBoard, FindsBoardAtManyPoses) {
 
 TEST(DetectLidarBoard, ErrorStaysWithinItsCovariance) {
   SyntheticLidarBoardOptions scene = Diamond();
-  for (const double noise_m : {0.005, 0.01, 0.015}) {
+  for (const double noise_m : {0.005, 0.015}) {
     scene.noise_m = noise_m;
     double sum_squares = 0.0;
     constexpr int kNumTrials = 8;

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "modules/rig/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace voqcal {
 namespace {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "modules/rig/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace voqcal {
 namespace {

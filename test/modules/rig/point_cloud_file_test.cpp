@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "modules/rig/real_data.hpp"
-#include "modules/rig/temporary_folder.hpp"
 #include "rig/atomic_file.hpp"
+#include "support/real_data.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace voqcal {
 namespace {
@@ -179,7 +179,7 @@ TEST(ReadPointCloud, RefusesWhatIsNoCloud) {
 }
 
 TEST(ReadPointCloud, ReadsARealSweep) {
-  const auto data = test::RealData();
+  const auto data = test::RealDataFolder();
   if (!data) GTEST_SKIP() << "no real data beside the sources";
   const PointCloud cloud = ReadPointCloud(*data / "acfr-vlp16/pcd/pose2_full.pcd");
   ASSERT_EQ(cloud.points.size(), 24163U);

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/rigid.hpp"
-#include "modules/rig/real_data.hpp"
-#include "modules/rig/temporary_folder.hpp"
+#include "support/real_data.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace voqcal {
 namespace {
@@ -154,7 +154,7 @@ TEST(ReadPosesCsv, RefusesPosesThatCannotBe) {
 }
 
 TEST(ReadPosesCsv, ReadsTheRealFile) {
-  const auto data = test::RealData();
+  const auto data = test::RealDataFolder();
   if (!data) GTEST_SKIP() << "no real data beside the sources";
   BoardSpec board;
   board.width_m = 0.61;

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include "modules/rig/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace voqcal {
 namespace {

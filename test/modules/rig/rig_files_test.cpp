@@ -49,7 +49,10 @@ TEST(SimulatedRig, ListsEveryOptionWithItsTrueDefault) {
   document.ThrowIfWrong();
   EXPECT_GT(document.known_keys().size(), 60U);
   for (const YamlDocument::KnownKey& key : document.known_keys()) {
-    ASSERT_NE(key.line, 0) << key.path << " is not in the file";
+    if (key.line == 0) {
+      ADD_FAILURE() << key.path << " is not in the file";
+      continue;
+    }
     const std::string& line = lines.at(static_cast<std::size_t>(key.line - 1));
     const bool has_default = line.rfind("default ") != std::string::npos;
     EXPECT_EQ(has_default, key.has_default) << key.path;

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "modules/rig/temporary_folder.hpp"
 #include "rig/sha256.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace voqcal {
 namespace {
@@ -80,12 +80,12 @@ TEST(LoadRig, ReadsABoxAndATransform) {
                        "lidar_board_detector: {region_of_interest: {min_lidar_m: [1, -2, -3], "
                        "max_lidar_m: [4, 5, 6]}}\n"
                        "simulation: {T_camera_lidar: {quaternion_xyzw: [0, 0, 0.7071, 0.7071], "
-                       "translation_m: [1, 2, 3]}}\n");
+                       "translation_m: [0.1, 0.2, 0.3]}}\n");
   ASSERT_TRUE(rig.lidar_board_detector.region_of_interest);
   EXPECT_EQ(rig.lidar_board_detector.region_of_interest->max_lidar_m, Eigen::Vector3d(4, 5, 6));
   // A quarter turn about z, made exact though its file rounds it.
   const Eigen::Vector3d p = rig.simulation.T_camera_lidar * Eigen::Vector3d::UnitX();
-  EXPECT_TRUE(p.isApprox(Eigen::Vector3d(1, 3, 3), 1e-15)) << p.transpose();
+  EXPECT_TRUE(p.isApprox(Eigen::Vector3d(0.1, 1.2, 0.3), 1e-15)) << p.transpose();
 }
 
 TEST(LoadRig, TakesASectionWhoseOptionsAreAllCommentedOut) {
@@ -125,6 +125,8 @@ TEST(LoadRig, RefusesUnknownAndRepeatedKeys) {
   EXPECT_EQ(LoadError(Minimal() + "lidar_board_detector:\n  min_rnage_m: 1\n"),
             "rig.yaml:6: lidar_board_detector.min_rnage_m is not a known key");
   EXPECT_EQ(LoadError(Minimal() + "lidar: {}\n"), "rig.yaml:5: lidar is not a known key");
+  EXPECT_EQ(LoadError(Minimal() + "lidar_driver: {jpeg_quality: 9}\n"),
+            "rig.yaml:5: lidar_driver.jpeg_quality is not a known key");
   EXPECT_EQ(LoadError(Minimal() + "voq_selector:\n  num_sets: 5\n  num_sets: 6\n"),
             "rig.yaml:7: voq_selector.num_sets is given twice, first on line 6");
 }

@@ -20,7 +20,8 @@
 
 namespace voqcal {
 
-/// The same as Bus' own default (a test holds them together): this module does not know LCM.
+/// The same as Bus' own default (a test of messaging holds them together): this module does not
+/// know LCM.
 inline constexpr char kDefaultRigLcmUrl[] = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
 
 /// The channel of each message, prefix included.
@@ -53,7 +54,7 @@ struct DriverOptions {
   std::string file_ending;       ///< For kFolder: only names that end so ("_full.pcd"); empty: all.
   double rate_hz = 10.0;         ///< Frames a second.
   bool is_repeating = false;     ///< For kFolder: starts again after the last file.
-  int jpeg_quality = 95;         ///< Of simulated images: 1 to 100.
+  int jpeg_quality = 95;         ///< Camera only, of simulated images: 1 to 100.
 
   /// One line for each broken constraint, with its value; empty if the options are usable. Whether
   /// the folder exists is for the driver to say: a rig file also serves where there is no such

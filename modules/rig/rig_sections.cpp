@@ -96,24 +96,38 @@ void ReadCamera(YamlSection* top, CameraModel* camera) {
   section.RefuseUnknownKeys();
 }
 
-void ReadDriver(YamlSection* top,
-                const char* key,
-                const std::filesystem::path& rig_path,
-                DriverOptions* options) {
-  YamlSection section = top->Section(key);
+/// What both drivers have in common.
+void ReadFrameSource(const std::filesystem::path& rig_path,
+                     YamlSection* section,
+                     DriverOptions* options) {
   std::string source = "folder";
   std::string folder;
-  section.Read("source", &source);
-  section.Read("folder", &folder);
-  section.Read("file_ending", &options->file_ending);
-  section.Read("rate_hz", &options->rate_hz);
-  section.Read("is_repeating", &options->is_repeating);
-  section.Read("jpeg_quality", &options->jpeg_quality);
+  section->Read("source", &source);
+  section->Read("folder", &folder);
+  section->Read("file_ending", &options->file_ending);
+  section->Read("rate_hz", &options->rate_hz);
+  section->Read("is_repeating", &options->is_repeating);
   if (source != "folder" && source != "simulator") {
-    section.AddError("source", "must be folder or simulator");
+    section->AddError("source", "must be folder or simulator");
   }
   options->source = source == "simulator" ? DriverSource::kSimulator : DriverSource::kFolder;
   if (!folder.empty()) options->folder = (rig_path.parent_path() / folder).lexically_normal();
+}
+
+void ReadLidarDriver(YamlSection* top,
+                     const std::filesystem::path& rig_path,
+                     DriverOptions* options) {
+  YamlSection section = top->Section("lidar_driver");
+  ReadFrameSource(rig_path, &section, options);
+  Finish(*options, &section);
+}
+
+void ReadCameraDriver(YamlSection* top,
+                      const std::filesystem::path& rig_path,
+                      DriverOptions* options) {
+  YamlSection section = top->Section("camera_driver");
+  ReadFrameSource(rig_path, &section, options);
+  section.Read("jpeg_quality", &options->jpeg_quality);
   Finish(*options, &section);
 }
 
@@ -215,8 +229,8 @@ void ReadRigSections(YamlDocument* document, Rig* rig) {
   ReadChannels(&top, channel_prefix, &rig->channels);
   ReadBoard(&top, &rig->board);
   ReadCamera(&top, &rig->camera);
-  ReadDriver(&top, "lidar_driver", rig->path, &rig->lidar_driver);
-  ReadDriver(&top, "camera_driver", rig->path, &rig->camera_driver);
+  ReadLidarDriver(&top, rig->path, &rig->lidar_driver);
+  ReadCameraDriver(&top, rig->path, &rig->camera_driver);
   ReadSimulation(&top, &rig->simulation);
   ReadLidarBoardDetector(&top, &rig->lidar_board_detector);
   ReadCameraBoardDetector(&top, &rig->camera_board_detector);

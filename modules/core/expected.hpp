@@ -16,7 +16,8 @@ class [[nodiscard]] Expected {
   bool has_value() const { return std::holds_alternative<T>(state_); }
   explicit operator bool() const { return has_value(); }
 
-  /// @throws std::bad_variant_access if there is no value (`value`, `*`, `->`) or no error (`error`).
+  /// @throws std::bad_variant_access if there is no value (`value`, `*`, `->`) or no error
+  /// (`error`).
   const T& value() const { return std::get<T>(state_); }
   T& value() { return std::get<T>(state_); }
   const T& operator*() const { return value(); }

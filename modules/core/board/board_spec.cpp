@@ -25,7 +25,8 @@ std::vector<std::string> BoardSpec::Problems() const {
   require(num_corners_x >= 3, "num_corners_x must be at least 3", num_corners_x);
   require(num_corners_y >= 3, "num_corners_y must be at least 3", num_corners_y);
   if (!problems.empty()) return problems;
-  // The pattern has one square more than inner corners on each axis; a partial square may be missing.
+  // The pattern has one square more than inner corners on each axis; a partial square may be
+  // missing.
   require((num_corners_x - 1) * square_m < width_m,
           "the inner corners along x must fit into width_m: (num_corners_x - 1) * square_m",
           (num_corners_x - 1) * square_m);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace voqcal {
 
@@ -13,11 +13,11 @@ namespace voqcal {
 /// Board frame: origin at the centre of the rectangle, x along the width, y along the height, z out
 /// of the printed face, towards the sensors. Seen from the front with y up, x points right.
 struct BoardSpec {
-  double width_m = 0.0;    ///< Edge along board x.
-  double height_m = 0.0;   ///< Edge along board y.
-  double square_m = 0.0;   ///< Side of one chessboard square.
-  int num_corners_x = 0;   ///< Inner corners along board x.
-  int num_corners_y = 0;   ///< Inner corners along board y.
+  double width_m = 0.0;             ///< Edge along board x.
+  double height_m = 0.0;            ///< Edge along board y.
+  double square_m = 0.0;            ///< Side of one chessboard square.
+  int num_corners_x = 0;            ///< Inner corners along board x.
+  int num_corners_y = 0;            ///< Inner corners along board y.
   double pattern_offset_x_m = 0.0;  ///< Centre of the pattern in the board frame.
   double pattern_offset_y_m = 0.0;
 

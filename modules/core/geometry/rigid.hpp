@@ -1,9 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-
-#include <vector>
 
 namespace voqcal {
 
@@ -20,7 +20,8 @@ Eigen::Matrix3d ExpSO3(const Eigen::Vector3d& omega_rad);
 Eigen::Vector3d LogSO3(const Eigen::Matrix3d& R);
 
 /// The rotation matrix nearest to M in the Frobenius norm (SVD, det +1).
-/// M of rank < 2 has no unique nearest rotation: the result is then a rotation, but an arbitrary one.
+/// M of rank < 2 has no unique nearest rotation: the result is then a rotation, but an arbitrary
+/// one.
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& M);
 
 /// Perturbs T_target_source on its left (target) side, rotation and translation apart:

@@ -8,26 +8,24 @@
 
 namespace voqcal {
 
-void PointMoments::Add(const Eigen::Vector3d& point_m, double weight) {
-  num += weight;
-  sum_m += weight * point_m;
-  outer_m2 += weight * point_m * point_m.transpose();
-}
-
-void PointMoments::Add(const PointMoments& other) {
-  num += other.num;
-  sum_m += other.sum_m;
-  outer_m2 += other.outer_m2;
+Eigen::Matrix3d PointMoments::CovarianceM2() const {
+  const Eigen::Vector3d mean_m = MeanM();
+  const Eigen::Vector3d xx_yy_zz = squares_m2 / num - mean_m.cwiseProduct(mean_m);
+  const double yz = products_m2.x() / num - mean_m.y() * mean_m.z();
+  const double zx = products_m2.y() / num - mean_m.z() * mean_m.x();
+  const double xy = products_m2.z() / num - mean_m.x() * mean_m.y();
+  Eigen::Matrix3d covariance_m2;
+  covariance_m2 << xx_yy_zz.x(), xy, zx, xy, xx_yy_zz.y(), yz, zx, yz, xx_yy_zz.z();
+  return covariance_m2;
 }
 
 PlaneFit FitPlane(const PointMoments& moments) {
   PlaneFit plane;
   if (moments.num <= 0) return plane;
   plane.point_m = moments.MeanM();
-  const Eigen::Matrix3d covariance_m2 =
-      moments.outer_m2 / moments.num - plane.point_m * plane.point_m.transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(covariance_m2);  // closed form: thousands of these are fitted in a sweep
+  solver.computeDirect(
+      moments.CovarianceM2());  // closed form: thousands of these are fitted in a sweep
   plane.normal = solver.eigenvectors().col(0).normalized();
   if (plane.normal.dot(plane.point_m) > 0) plane.normal = -plane.normal;
   plane.spread_m = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();

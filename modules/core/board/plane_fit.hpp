@@ -12,11 +12,25 @@ namespace voqcal {
 struct PointMoments {
   double num = 0.0;
   Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d outer_m2 = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d squares_m2 = Eigen::Vector3d::Zero();   ///< Sums of xx, yy, zz...
+  Eigen::Vector3d products_m2 = Eigen::Vector3d::Zero();  ///< ...and of yz, zx, xy.
 
-  void Add(const Eigen::Vector3d& point_m, double weight = 1.0);
-  void Add(const PointMoments& other);
+  void Add(const Eigen::Vector3d& point_m, double weight = 1.0) {
+    num += weight;
+    sum_m += weight * point_m;
+    squares_m2 += weight * point_m.cwiseProduct(point_m);
+    products_m2 += weight * Eigen::Vector3d(point_m.y() * point_m.z(),
+                                            point_m.z() * point_m.x(),
+                                            point_m.x() * point_m.y());
+  }
+  void Add(const PointMoments& other) {
+    num += other.num;
+    sum_m += other.sum_m;
+    squares_m2 += other.squares_m2;
+    products_m2 += other.products_m2;
+  }
   Eigen::Vector3d MeanM() const { return sum_m / num; }
+  Eigen::Matrix3d CovarianceM2() const;  ///< Of the points about their mean.
 };
 
 /// A plane and how the points lie in it: principal axes with the spread (1 sigma) along each.

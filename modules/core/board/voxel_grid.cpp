@@ -1,0 +1,113 @@
+#include "core/board/voxel_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace voqcal {
+namespace {
+
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr int kBits = 21;  // for each axis: +-1 million cells, beyond any range over any cell
+constexpr std::int64_t kOffset = std::int64_t{1} << (kBits - 1);
+constexpr std::uint64_t kAxisMask = (std::uint64_t{1} << kBits) - 1;
+
+std::uint64_t PackedAxis(double cell) {
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(cell)) + kOffset) &
+         kAxisMask;
+}
+
+/// Orders like (x, y, z).
+std::uint64_t KeyOf(const Eigen::Vector3d& point_m, double per_voxel) {
+  return PackedAxis(point_m.x() * per_voxel) << (2 * kBits) |
+         PackedAxis(point_m.y() * per_voxel) << kBits | PackedAxis(point_m.z() * per_voxel);
+}
+
+/// From key to number: open addressing, at most half full. Several times faster than
+/// std::unordered_map here.
+class KeyTable {
+ public:
+  /// The number of `key`; a new key gets the next one.
+  std::uint32_t NumberOf(std::uint64_t key) {
+    std::size_t i = SlotOf(key);
+    if (slots_[i].second != kNone) return slots_[i].second;
+    if (2 * keys_.size() >= slots_.size()) {
+      Double();
+      i = SlotOf(key);
+    }
+    slots_[i] = {key, static_cast<std::uint32_t>(keys_.size())};
+    keys_.push_back(key);
+    return slots_[i].second;
+  }
+
+  /// kNone if `key` is unknown.
+  std::uint32_t Find(std::uint64_t key) const { return slots_[SlotOf(key)].second; }
+
+  const std::vector<std::uint64_t>& Keys() const { return keys_; }
+
+ private:
+  using Slot = std::pair<std::uint64_t, std::uint32_t>;
+
+  /// Where `key` is, or where it would go.
+  std::size_t SlotOf(std::uint64_t key) const {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t i = (key * 0x9E3779B97F4A7C15U >> 32) & mask;  // Fibonacci hashing, TAOCP 3, 6.4
+    while (slots_[i].second != kNone && slots_[i].first != key) i = (i + 1) & mask;
+    return i;
+  }
+
+  void Double() {
+    slots_.assign(2 * slots_.size(), {0, kNone});
+    for (std::uint32_t n = 0; n < keys_.size(); ++n) slots_[SlotOf(keys_[n])] = {keys_[n], n};
+  }
+
+  std::vector<Slot> slots_ = std::vector<Slot>(4096, {0, kNone});
+  std::vector<std::uint64_t> keys_;
+};
+
+}  // namespace
+
+VoxelGrid::VoxelGrid(const std::vector<Eigen::Vector3d>& points_m, double voxel_m) {
+  KeyTable table;
+  std::vector<PointMoments> moments;
+  for (const Eigen::Vector3d& point_m : points_m) {
+    const std::uint32_t cell = table.NumberOf(KeyOf(point_m, 1.0 / voxel_m));
+    if (cell == moments.size()) moments.emplace_back();
+    moments[cell].Add(point_m);
+  }
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  order.reserve(moments.size());
+  for (std::uint32_t i = 0; i < moments.size(); ++i) order.emplace_back(table.Keys()[i], i);
+  std::sort(order.begin(), order.end());
+
+  cells_.reserve(order.size());
+  std::vector<std::uint64_t> column_keys;
+  for (const auto& [key, i] : order) {
+    if (column_keys.empty() || column_keys.back() != key >> kBits) {
+      column_keys.push_back(key >> kBits);
+      columns_.emplace_back().begin = cells_.size();
+    }
+    const auto column = static_cast<std::uint32_t>(columns_.size() - 1);
+    cells_.push_back(
+        {static_cast<std::int64_t>(key & kAxisMask), column, moments[i], moments[i].MeanM()});
+    columns_.back().end = cells_.size();
+  }
+  LinkColumns(column_keys);
+}
+
+void VoxelGrid::LinkColumns(const std::vector<std::uint64_t>& keys) {
+  KeyTable table;
+  for (const std::uint64_t key : keys) table.NumberOf(key);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      for (int dy = -kReach; dy <= kReach; ++dy) {
+        const std::int64_t step = dx * (std::int64_t{1} << kBits) + dy;
+        const std::uint32_t near = table.Find(keys[i] + static_cast<std::uint64_t>(step));
+        columns_[i].near[NearSlot(dx, dy)] =
+            near == kNone ? kNoColumn : static_cast<std::int32_t>(near);
+      }
+    }
+  }
+}
+
+}  // namespace voqcal

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/board/plane_fit.hpp"
+
+namespace voqcal {
+
+/// Points gathered in cubes; a cell's neighbours are found without hashing.
+///
+/// Cells are ordered by x, y, z. Those of equal x and y form a column, and each column knows the
+/// columns around it: a neighbourhood is 9 or 25 short runs of cells.
+class VoxelGrid {
+ public:
+  struct Cell {
+    std::int64_t z = 0;  ///< Height in the column, in cells.
+    std::uint32_t column = 0;
+    PointMoments moments;
+    Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
+  };
+
+  VoxelGrid(const std::vector<Eigen::Vector3d>& points_m, double voxel_m);
+
+  const std::vector<Cell>& Cells() const { return cells_; }
+
+  /// Calls `visit(i)` for each cell within `reach` (at most 2) steps of cell `at`, itself included.
+  template <typename Visit>
+  void ForEachNear(std::size_t at, int reach, Visit visit) const {
+    const Cell& cell = cells_[at];
+    for (int dx = -reach; dx <= reach; ++dx) {
+      for (int dy = -reach; dy <= reach; ++dy) {
+        const std::int32_t near = columns_[cell.column].near[NearSlot(dx, dy)];
+        if (near == kNoColumn) continue;
+        const Column& column = columns_[static_cast<std::size_t>(near)];
+        for (std::size_t i = column.begin; i < column.end; ++i) {
+          if (cells_[i].z > cell.z + reach) break;
+          if (cells_[i].z >= cell.z - reach) visit(i);
+        }
+      }
+    }
+  }
+
+ private:
+  static constexpr int kReach = 2;
+  static constexpr std::int32_t kNoColumn = -1;
+
+  struct Column {
+    std::size_t begin = 0;  // of cells_
+    std::size_t end = 0;
+    std::array<std::int32_t, (2 * kReach + 1) * (2 * kReach + 1)> near{};
+  };
+
+  static std::size_t NearSlot(int dx, int dy) {
+    return static_cast<std::size_t>((dx + kReach) * (2 * kReach + 1) + dy + kReach);
+  }
+
+  void LinkColumns(const std::vector<std::uint64_t>& keys);
+
+  std::vector<Cell> cells_;
+  std::vector<Column> columns_;
+};
+
+}  // namespace voqcal

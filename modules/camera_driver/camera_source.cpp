@@ -61,6 +61,7 @@ class SimulatedCameraSource : public CameraSource {
 std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig) {
   switch (rig.camera_driver.source) {
     case DriverSource::kFolder:
+      RequireFolder(rig.camera_driver, rig.path.string() + ": camera_driver");
       return std::make_unique<FolderCameraSource>(rig.camera_driver);
     case DriverSource::kSimulator:
       return std::make_unique<SimulatedCameraSource>(rig);

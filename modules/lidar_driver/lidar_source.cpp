@@ -48,6 +48,7 @@ class SimulatedLidarSource : public LidarSource {
 std::unique_ptr<LidarSource> MakeLidarSource(const Rig& rig) {
   switch (rig.lidar_driver.source) {
     case DriverSource::kFolder:
+      RequireFolder(rig.lidar_driver, rig.path.string() + ": lidar_driver");
       return std::make_unique<FolderLidarSource>(rig.lidar_driver);
     case DriverSource::kSimulator:
       return std::make_unique<SimulatedLidarSource>(rig);

@@ -47,11 +47,14 @@ std::optional<std::int64_t> FrameNumber(const std::filesystem::path& path) {
   return std::stoll(digits);
 }
 
+void RequireFolder(const DriverOptions& options, const std::string& where) {
+  if (options.folder.empty()) {
+    throw std::runtime_error(where + ".folder: must be given, since source is folder");
+  }
+}
+
 FrameFolder::FrameFolder(const DriverOptions& options, const std::vector<std::string>& extensions)
     : is_repeating_(options.is_repeating) {
-  if (options.folder.empty()) {
-    throw std::runtime_error("the rig file's driver has source: folder, but no folder");
-  }
   std::vector<std::filesystem::path> paths = FilesInNaturalOrder(options.folder, extensions);
   const auto is_other = [&options](const std::filesystem::path& path) {
     return !EndsWith(path.filename().string(), options.file_ending);

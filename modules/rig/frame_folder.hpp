@@ -20,6 +20,10 @@ struct FrameFile {
 /// none, or one too large to be a frame's.
 std::optional<std::int64_t> FrameNumber(const std::filesystem::path& path);
 
+/// @param where  file and section that the message names: "my_rig.yaml: lidar_driver".
+/// @throws std::runtime_error if the options name no folder.
+void RequireFolder(const DriverOptions& options, const std::string& where);
+
 /// The files of a driver's folder as frames. Frame number n stands for kSyntheticEpochUtime + n /
 /// rate_hz, so that pose10.png and pose10_full.pcd are of the same instant although other poses may
 /// be missing; where a name has no number, or two names have the same, n is the file's place.

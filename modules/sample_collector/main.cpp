@@ -14,7 +14,9 @@ int main(int argc, char** argv) {
   return voqcal::RunProcess(argc, argv, info, [](const voqcal::ProcessArgs& args) {
     const voqcal::Rig rig = voqcal::LoadRig(args.rig_path);
     voqcal::Bus bus(args.lcm_url.value_or(rig.lcm_url));
-    voqcal::SampleCollectorNode node(rig, &bus, voqcal::SessionFolder(args.session_dir, rig));
+    const auto session_folder = voqcal::SessionFolder(args.session_dir, rig);
+    voqcal::SampleCollectorNode node(rig, &bus, session_folder);
+    spdlog::info("{}: {} samples so far", session_folder.string(), node.samples().size());
     voqcal::Spin(bus, node, rig.channels.module_status);
     spdlog::info(node.Summary());
   });

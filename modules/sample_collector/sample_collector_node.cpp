@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "messaging/convert_board.hpp"
 #include "voqcal/event_t.hpp"
 #include "voqcal/samples_t.hpp"
@@ -19,9 +17,6 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
       session_(session_folder),
       log_sha256_(session_.Sha256()) {
   picker_.SetKnown(session_.samples());
-  if (!samples().empty()) {
-    spdlog::info("{}: goes on with {} samples", session_folder.string(), samples().size());
-  }
   bus_.Subscribe<lidar_board_t>(
       channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& message) {
         has_new_frames_ = true;

@@ -34,6 +34,9 @@ void Deliver(const std::filesystem::path& from, const std::filesystem::path& to)
 
 void Calibrate(const CalibrateArgs& args) {
   const Rig rig = LoadRig(args.rig);
+  if (std::filesystem::exists(args.out) && !std::filesystem::is_directory(args.out)) {
+    throw std::runtime_error(args.out.string() + ": is in the way: --out names a folder");
+  }
   const ScratchFolder scratch(args.out);
   const auto run = CollectSamples(rig, args.input, scratch.path());
   run->Finish(/*is_collecting_only=*/false);

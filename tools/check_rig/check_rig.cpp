@@ -1,0 +1,58 @@
+// check_rig: reads a rig file as every module does, and says what is wrong with it or what it
+// means.
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "common/tool_main.hpp"
+#include "rig/rig.hpp"
+
+namespace voqcal {
+namespace {
+
+const char* ToString(DriverSource source) {
+  return source == DriverSource::kFolder ? "folder" : "simulator";
+}
+
+void PrintRig(const Rig& rig) {
+  std::printf("%s: is usable\n", rig.path.c_str());
+  std::printf("rig        %s\n", rig.name.c_str());
+  std::printf("lcm_url    %s\n", rig.lcm_url.c_str());
+  std::printf("board      %.3f x %.3f m, %d x %d inner corners of %.1f mm squares\n",
+              rig.board.width_m,
+              rig.board.height_m,
+              rig.board.num_corners_x,
+              rig.board.num_corners_y,
+              1e3 * rig.board.square_m);
+  std::printf("camera     %s, %d x %d px, fx %.1f fy %.1f px\n",
+              ToString(rig.camera.lens).c_str(),
+              rig.camera.width_px,
+              rig.camera.height_px,
+              rig.camera.fx_px,
+              rig.camera.fy_px);
+  std::printf(
+      "reads      %s, %s\n", rig.channels.lidar_points.c_str(), rig.channels.camera_image.c_str());
+  std::printf("drivers    lidar: %s, camera: %s\n",
+              ToString(rig.lidar_driver.source),
+              ToString(rig.camera_driver.source));
+}
+
+}  // namespace
+}  // namespace voqcal
+
+int main(int argc, char** argv) {
+  CLI::App app("Checks a rig file as every module reads it, and says what it means.", "check_rig");
+  std::filesystem::path path;
+  bool is_url_only = false;
+  app.add_option("rig", path, "The rig file (YAML)")->required();
+  app.add_flag("--lcm-url", is_url_only, "Print just the LCM URL, for scripts");
+  return voqcal::RunTool(&app, argc, argv, [&path, &is_url_only] {
+    const voqcal::Rig rig = voqcal::LoadRig(path);
+    if (is_url_only) {
+      std::puts(rig.lcm_url.c_str());
+    } else {
+      voqcal::PrintRig(rig);
+    }
+  });
+}

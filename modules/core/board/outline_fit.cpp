@@ -1,6 +1,7 @@
 #include "core/board/outline_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -29,51 +30,107 @@ void Expect(double value, double mean, double sigma, Eigen::Index row, Climb* cl
   climb->fit.information(row, row) += 1 / (sigma * sigma);
 }
 
+/// L(t) of the model; beyond kFlat it differs from a step by 1e-6: no slope left.
+constexpr double kFlat = 14.0;
+double Logistic(double t) { return t > kFlat ? 1.0 : 1.0 / (1.0 + std::exp(-t)); }
+
+/// Sums over beams. A logarithm is taken of many probabilities' product at once.
+struct BeamSums {
+  double log_likelihood = 0.0;
+  double likelihood = 1.0;
+  std::array<double, 5> gradient{};
+  std::array<double, 15> information{};  // lower triangle, row by row
+
+  void Add(double p_hit, bool is_hit, const std::array<double, 5>& J) {
+    constexpr double kTiny = 1e-200;
+    likelihood *= is_hit ? p_hit : 1.0 - p_hit;
+    if (likelihood < kTiny) Flush();
+    const double pull = 1.0 / (is_hit ? p_hit : p_hit - 1.0);
+    const double weight = 1.0 / (p_hit * (1.0 - p_hit));
+    std::size_t k = 0;
+    for (std::size_t row = 0; row < 5; ++row) {
+      gradient[row] += pull * J[row];
+      for (std::size_t col = 0; col <= row; ++col) information[k++] += weight * J[row] * J[col];
+    }
+  }
+
+  void Flush() {
+    log_likelihood += std::log(likelihood);
+    likelihood = 1.0;
+  }
+
+  void AddTo(Climb* climb) {
+    Flush();
+    climb->fit.log_likelihood += log_likelihood;
+    std::size_t k = 0;
+    for (Eigen::Index row = 0; row < 5; ++row) {
+      climb->gradient[row] += gradient[static_cast<std::size_t>(row)];
+      for (Eigen::Index col = 0; col <= row; ++col, ++k) {
+        climb->fit.information(row, col) += information[k];
+        if (col != row) climb->fit.information(col, row) += information[k];
+      }
+    }
+  }
+};
+
 Climb Differentiate(const std::vector<OutlineBeam>& beams,
                     const OutlineModel& model,
                     const OutlineFit& at) {
-  constexpr double kFlat = 14.0;  // L(14) differs from 1 by 1e-6: no slope left
   const double keep = 1.0 - model.outlier_share;
   const double log_far = std::log(model.outlier_share / 2);
   const double log_sure = std::log(1.0 - model.outlier_share / 2);
   const Eigen::Vector2d stretch = model.Stretch();
+  const Eigen::Vector2d per_blur = (model.blur_m * stretch).cwiseInverse();
   // Sides: right, left, top, bottom. Distance inside, blur, and what thickness adds.
-  const Eigen::Vector4d side_stretch(stretch.x(), stretch.x(), stretch.y(), stretch.y());
-  const Eigen::Vector4d per_blur = (model.blur_m * side_stretch).cwiseInverse();
   const Eigen::Vector4d side_lean = model.SideLean();
   const Eigen::Vector4d half_m =
       Eigen::Vector4d(model.width_m, model.width_m, model.height_m, model.height_m) / 2 +
-      at.spill_m * side_stretch + at.thickness_m * side_lean;
-  const Eigen::Rotation2Dd R_rectangle_plane(-at.pose.angle_rad);
+      at.spill_m * Eigen::Vector4d(stretch.x(), stretch.x(), stretch.y(), stretch.y()) +
+      at.thickness_m * side_lean;
+  const double cosine = std::cos(at.pose.angle_rad);
+  const double sine = std::sin(at.pose.angle_rad);
   Climb climb;
   climb.fit.pose = at.pose;
   climb.fit.spill_m = at.spill_m;
   climb.fit.thickness_m = at.thickness_m;
   Expect(at.spill_m, model.spill_m, model.spill_sigma_m, 3, &climb);
   Expect(at.thickness_m, model.thickness_m, model.thickness_sigma_m, 4, &climb);
+  BeamSums sums;
   for (const OutlineBeam& beam : beams) {
-    const Eigen::Vector2d q_m = R_rectangle_plane * (beam.position_m - at.pose.centre_m);
-    const Eigen::Vector4d inside =
-        (half_m - Eigen::Vector4d(q_m.x(), -q_m.x(), q_m.y(), -q_m.y())).cwiseProduct(per_blur);
-    const double least = inside.minCoeff();
+    const double dx = beam.position_m.x() - at.pose.centre_m.x();
+    const double dy = beam.position_m.y() - at.pose.centre_m.y();
+    const double x = cosine * dx + sine * dy;
+    const double y = cosine * dy - sine * dx;
+    const double right = (half_m[0] - x) * per_blur.x();
+    const double left = (half_m[1] + x) * per_blur.x();
+    const double top = (half_m[2] - y) * per_blur.y();
+    const double bottom = (half_m[3] + y) * per_blur.y();
+    const double least = std::min(std::min(right, left), std::min(top, bottom));
     if (std::abs(least) > kFlat) {
-      climb.fit.log_likelihood += (least > 0) == beam.is_hit ? log_sure : log_far;
+      sums.log_likelihood += (least > 0) == beam.is_hit ? log_sure : log_far;
       continue;
     }
-    const Eigen::Vector4d L = (1.0 + (-inside.array()).exp()).inverse();
-    const double p_hit = model.outlier_share / 2 + keep * L.prod();
+    const double L_right = Logistic(right);
+    const double L_left = Logistic(left);
+    const double L_top = Logistic(top);
+    const double L_bottom = Logistic(bottom);
+    const double kept = keep * L_right * L_left * L_top * L_bottom;
     // d p / d (distance inside each side), then: the centre and the angle move q by -(1, 0), -(0,
     // 1) and (y, -x).
-    const Eigen::Vector4d slope = keep * L.prod() * (1.0 - L.array()) * per_blur.array();
-    const double slope_x = slope[1] - slope[0];
-    const double slope_y = slope[3] - slope[2];
-    Vector5d J;
-    J << -slope_x, -slope_y, slope_x * q_m.y() - slope_y * q_m.x(), slope.dot(side_stretch),
-        slope.dot(side_lean);
-    climb.fit.log_likelihood += std::log(beam.is_hit ? p_hit : 1.0 - p_hit);
-    climb.gradient += J / (beam.is_hit ? p_hit : p_hit - 1.0);
-    climb.fit.information += J * J.transpose() / (p_hit * (1.0 - p_hit));
+    const double d_right = kept * (1.0 - L_right) * per_blur.x();
+    const double d_left = kept * (1.0 - L_left) * per_blur.x();
+    const double d_top = kept * (1.0 - L_top) * per_blur.y();
+    const double d_bottom = kept * (1.0 - L_bottom) * per_blur.y();
+    const double d_x = d_left - d_right;
+    const double d_y = d_bottom - d_top;
+    const double d_spill = (d_right + d_left) * stretch.x() + (d_top + d_bottom) * stretch.y();
+    const double d_thickness = d_right * side_lean[0] + d_left * side_lean[1] +
+                               d_top * side_lean[2] + d_bottom * side_lean[3];
+    sums.Add(model.outlier_share / 2 + kept,
+             beam.is_hit,
+             {-d_x, -d_y, d_x * y - d_y * x, d_spill, d_thickness});
   }
+  sums.AddTo(&climb);
   return climb;
 }
 

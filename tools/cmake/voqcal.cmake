@@ -41,13 +41,15 @@ function(voqcal_program name)
   target_link_libraries(${name} PRIVATE ${arg_LIBS})
 endfunction()
 
-# voqcal_test(NAME SOURCES x_test.cpp LIBS x [LABELS l]): one GoogleTest executable; each TEST is one ctest test.
+# voqcal_test(NAME SOURCES x_test.cpp LIBS x [LABELS l] [PROPERTIES p v ...]): one GoogleTest executable;
+# each TEST is one ctest test, with these properties of ctest.
 function(voqcal_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBS;LABELS;PROPERTIES" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
   voqcal_target_defaults(${name})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test)
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gmock GTest::gtest_main)
-  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" ${arg_PROPERTIES}
+    DISCOVERY_TIMEOUT 60)
 endfunction()

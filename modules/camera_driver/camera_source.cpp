@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/simulation/simulation.hpp"
+#include "messaging/encoded_image.hpp"
 #include "rig/atomic_file.hpp"
 #include "rig/frame_folder.hpp"
 
@@ -23,8 +24,12 @@ class FolderCameraSource : public CameraSource {
   std::optional<TimedImage> Next() override {
     const auto file = folder_.Next();
     if (!file) return {};
-    const std::string bytes = ReadWholeFile(file->path);
-    return TimedImage{file->utime, {bytes.begin(), bytes.end()}};
+    const std::string text = ReadWholeFile(file->path);
+    TimedImage image{file->utime, {text.begin(), text.end()}};
+    if (!InspectEncodedImage(image.bytes)) {
+      throw std::runtime_error(file->path.string() + ": neither a JPEG nor a PNG");
+    }
+    return image;
   }
 
  private:

@@ -1,0 +1,102 @@
+#include "camera_board_detector/camera_board_detector_node.hpp"
+
+#include <exception>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "messaging/convert_board.hpp"
+#include "messaging/convert_image.hpp"
+#include "modules/nodes/node_test.hpp"
+#include "support/matchers.hpp"
+#include "support/synthetic_board_image.hpp"
+#include "support/test_cameras.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+Rig SmallRig() {
+  Rig rig = test::TestRig();
+  rig.camera = test::SmallCamera(LensModel::kEquidistant);
+  return rig;
+}
+
+class CameraBoardDetectorNodeTest : public ::testing::Test {
+ protected:
+  void Send(const image_t& message) { test::Send(&bus_, rig_.channels.camera_image, message); }
+  const std::vector<camera_board_t>& found() const { return inbox_.messages; }
+
+  Rig rig_ = SmallRig();
+  Bus bus_{"memq://"};
+  CameraBoardDetectorNode node_{rig_, &bus_};
+  test::Inbox<camera_board_t> inbox_{&bus_, rig_.channels.camera_board};
+};
+
+Eigen::Isometry3d BoardAhead() {
+  Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();
+  T_camera_board.linear() = ExpSO3({0.25, -0.3, 0}) * ExpSO3({M_PI, 0, 0}) * ExpSO3({0, 0, 0.5});
+  T_camera_board.translation() << 0.05, -0.02, 1.5;
+  return T_camera_board;
+}
+
+cv::Mat ImageOfBoard(const Rig& rig) {
+  return test::RenderBoard(rig.camera, rig.board, BoardAhead());
+}
+
+TEST_F(CameraBoardDetectorNodeTest, PublishesTheBoardOfAnImage) {
+  Send(ToMessage(ImageOfBoard(rig_), 77, 0));
+  ASSERT_THAT(found(), SizeIs(1));
+  EXPECT_EQ(found()[0].utime, 77);
+  EXPECT_EQ(found()[0].frame, "camera");
+  EXPECT_EQ(found()[0].miss, "");
+  const CameraSighting sighting = SightingFromMessage(found()[0]);
+  ASSERT_TRUE(sighting.board);
+  // 0.1 px of a corner's position, as in the detector's own test.
+  EXPECT_THAT(TransformFromPose(sighting.board->pose), test::IsNear(BoardAhead(), 3e-3, 3e-3));
+  EXPECT_EQ(node_.counters(), (test::Counters{{"boards", 1}}));
+}
+
+TEST_F(CameraBoardDetectorNodeTest, AnswersAnImageWithoutABoardWithTheReason) {
+  Send(ToMessage(
+      cv::Mat(rig_.camera.height_px, rig_.camera.width_px, CV_8UC1, cv::Scalar(110)), 78, 0));
+  ASSERT_THAT(found(), SizeIs(1));
+  EXPECT_THAT(found()[0].miss, Not(IsEmpty()));
+  EXPECT_EQ(node_.counters(), (test::Counters{{found()[0].miss, 1}}));
+}
+
+TEST_F(CameraBoardDetectorNodeTest, CountsACorruptJpegAndGoesOn) {
+  std::vector<std::uint8_t> jpeg;
+  cv::imencode(".jpg", ImageOfBoard(rig_), jpeg);
+  const image_t good = EncodedToMessage(jpeg, 2, 1);
+  image_t broken = EncodedToMessage(jpeg, 1, 0);
+  broken.data.resize(broken.data.size() / 2);
+  broken.size = static_cast<std::int32_t>(broken.data.size());
+  Send(broken);
+  Send(good);
+  ASSERT_THAT(found(), SizeIs(2));
+  EXPECT_THAT(found()[0].miss, HasSubstr("the JPEG is cut off"));
+  EXPECT_EQ(found()[1].miss, "");
+  EXPECT_EQ(node_.counters(), (test::Counters{{"boards", 1}, {found()[0].miss, 1}}));
+}
+
+TEST_F(CameraBoardDetectorNodeTest, ThrowsBothSizesForAnImageOfAnotherSize) {
+  bus_.Publish(rig_.channels.camera_image,
+               ToMessage(cv::Mat(480, 752, CV_8UC1, cv::Scalar(110)), 1, 0));
+  try {
+    test::HandleAll(&bus_);
+    FAIL() << "an image of another size is no ordinary miss";
+  } catch (const std::exception& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("752 x 480"), HasSubstr("640 x 400")));
+  }
+  EXPECT_THAT(found(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace voqcal

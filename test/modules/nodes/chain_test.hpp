@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "messaging/convert_board.hpp"
+#include "modules/nodes/node_test.hpp"
+
+namespace voqcal::test {
+
+/// Samples of a lidar and a camera as good as real ones, so that sets and sizes differ.
+inline std::vector<BoardSample> NoisySamples(int num_samples) {
+  SyntheticSamplesOptions options;
+  options.num_samples = num_samples;
+  options.lidar_rotation_noise_rad = 0.005;
+  options.lidar_centre_noise_m = 0.005;
+  options.edge_noise_m = 0.005;
+  return SynthesizeSamples(options);
+}
+
+/// The stages behind the sample collector, each of which reads CALIB_SAMPLES.
+class ChainTest : public ::testing::Test {
+ protected:
+  static samples_t SamplesMessage(const std::vector<BoardSample>& samples, std::int64_t revision) {
+    return ToMessage(samples, revision, true, "log's hash");
+  }
+  void SendSamples(const std::vector<BoardSample>& samples, std::int64_t revision) {
+    Send(&bus_, rig_.channels.calib_samples, SamplesMessage(samples, revision));
+  }
+  /// Lets a stage compute, and hands on what it publishes.
+  template <typename Node>
+  void Step(Node* node) {
+    EXPECT_FALSE(node->Step());
+    HandleAll(&bus_);
+  }
+
+  Rig rig_ = TestRig();
+  Bus bus_{"memq://"};
+};
+
+}  // namespace voqcal::test

@@ -1,0 +1,99 @@
+#include "calibrate/offline_run.hpp"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rig/atomic_file.hpp"
+#include "support/matchers.hpp"
+#include "support/simulated_log.hpp"
+#include "support/synthetic_samples.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+void NoProgress(double /*share*/, std::size_t /*num_samples*/) {}
+
+class OfflineRunTest : public ::testing::Test {
+ protected:
+  std::filesystem::path session(const std::string& name) const { return folder_.path() / name; }
+
+  test::TemporaryFolder folder_;
+  std::filesystem::path log_ = folder_.path() / "raw.lcm";
+};
+
+TEST_F(OfflineRunTest, CalibratesATinyLogTwiceToTheSameBytes) {
+  const Rig rig = test::TinySimulatedRig();
+  test::WriteStopsLog(rig, log_);
+  for (const char* name : {"first", "second"}) {
+    OfflineRun run(rig, session(name));
+    double share = 0;
+    run.FeedLog(log_, [&share](double now, std::size_t) { share = now; });
+    run.Finish(/*is_collecting_only=*/false);
+    EXPECT_EQ(share, 1.0);
+    EXPECT_THAT(run.samples(), SizeIs(rig.simulation.num_poses));
+    ASSERT_TRUE(run.assessor().result()) << run.assessor().problem();
+    // A check of the wiring, not of the method: the stops are few and near. 10 mm of range noise
+    // and a degree of a normal, over the lever of a few metres.
+    EXPECT_THAT(run.assessor().result()->T_camera_lidar,
+                test::IsNear(rig.simulation.T_camera_lidar, 0.02, 0.03));
+  }
+  EXPECT_EQ(ReadWholeFile(session("first") / kResultName),
+            ReadWholeFile(session("second") / kResultName));
+}
+
+TEST_F(OfflineRunTest, CollectsOnlyIfAsked) {
+  OfflineRun run(test::TinySimulatedRig(), session("s"));
+  run.FeedSamples(test::SynthesizeSamples({}));
+  run.Finish(/*is_collecting_only=*/true);
+  EXPECT_THAT(run.samples(), SizeIs(30));
+  EXPECT_FALSE(run.assessor().result());
+  EXPECT_FALSE(std::filesystem::exists(session("s") / kResultName));
+}
+
+TEST_F(OfflineRunTest, SaysWhyThereIsNoResult) {
+  test::SyntheticSamplesOptions two;
+  two.num_samples = 2;
+  OfflineRun run(test::TinySimulatedRig(), session("s"));
+  run.FeedSamples(test::SynthesizeSamples(two));
+  run.Finish(/*is_collecting_only=*/false);
+  EXPECT_FALSE(run.assessor().result());
+  EXPECT_THAT(run.assessor().problem(), HasSubstr("fewer than three samples"));
+}
+
+TEST_F(OfflineRunTest, NamesTheChannelThatALogHasNot) {
+  LogWriter(log_).Write({0, 0, "POSE", {1, 2, 3}});
+  OfflineRun run(test::TinySimulatedRig(), session("s"));
+  EXPECT_THAT(test::ErrorOf([&] { run.FeedLog(log_, NoProgress); }),
+              AllOf(HasSubstr(log_.string()),
+                    HasSubstr("no channel LIDAR_POINTS"),
+                    HasSubstr("it has POSE")));
+}
+
+TEST_F(OfflineRunTest, NamesTheEventOfAnImageOfAnotherSize) {
+  Rig other = test::TinySimulatedRig();
+  test::WriteStopsLog(other, log_);
+  other.camera.width_px += 2;
+  OfflineRun run(other, session("s"));
+  EXPECT_THAT(test::ErrorOf([&] { run.FeedLog(log_, NoProgress); }),
+              AllOf(HasSubstr(log_.string() + ": event"), HasSubstr("CAMERA_IMAGE")));
+}
+
+TEST_F(OfflineRunTest, TellsASessionsLogFromARecording) {
+  {
+    OfflineRun run(test::TinySimulatedRig(), session("s"));
+    run.FeedSamples(test::SynthesizeSamples({}));
+  }
+  LogWriter(log_).Write({0, 0, "LIDAR_POINTS", {1, 2, 3}});
+  EXPECT_TRUE(IsSamplesLog(session("s") / kSamplesLogName));
+  EXPECT_FALSE(IsSamplesLog(log_));
+}
+
+}  // namespace
+}  // namespace voqcal

@@ -1,0 +1,218 @@
+#include "sample_collector/sample_collector_node.hpp"
+
+#include <memory>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "modules/nodes/node_test.hpp"
+#include "rig/sha256.hpp"
+#include "support/sightings.hpp"
+#include "support/temporary_folder.hpp"
+#include "voqcal/event_t.hpp"
+#include "voqcal/samples_t.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+class SampleCollectorNodeTest : public ::testing::Test {
+ protected:
+  SampleCollectorNodeTest() { Restart(); }
+
+  void Restart() {
+    node_.reset();
+    inbox_.reset();
+    events_.reset();
+    bus_ = std::make_unique<Bus>("memq://");
+    node_ = std::make_unique<SampleCollectorNode>(rig_, bus_.get(), folder_.path());
+    inbox_ = std::make_unique<test::Inbox<samples_t>>(bus_.get(), rig_.channels.calib_samples);
+    events_ = std::make_unique<test::Inbox<event_t>>(bus_.get(), rig_.channels.calib_event);
+  }
+
+  /// The board rests at a pose over three frames, and a fourth that closes the third.
+  void ShowStop(int stop) {
+    for (const test::SightingMessages& frame : test::StillFrames(samples_, stop)) {
+      test::Send(bus_.get(), rig_.channels.lidar_board, frame.lidar);
+      test::Send(bus_.get(), rig_.channels.camera_board, frame.camera);
+    }
+  }
+
+  void Command(const std::string& text, std::int64_t sample_id = 0) {
+    command_t command{};
+    command.command = text;
+    command.sample_id = sample_id;
+    test::Send(bus_.get(), rig_.channels.calib_command, command);
+  }
+
+  /// A second passes.
+  void Republish() {
+    node_->Republish();
+    test::HandleAll(bus_.get());
+  }
+
+  std::vector<std::int64_t> Ids() const { return IdsOf(SamplesWithout(node_->samples(), {})); }
+  const samples_t& last() const { return inbox_->messages.back(); }
+  const event_t& last_event() const { return events_->messages.back(); }
+
+  Rig rig_ = test::TestRig();
+  test::TemporaryFolder folder_;
+  std::vector<BoardSample> samples_ = test::SynthesizeSamples({});
+  std::unique_ptr<Bus> bus_;
+  std::unique_ptr<SampleCollectorNode> node_;
+  std::unique_ptr<test::Inbox<samples_t>> inbox_;
+  std::unique_ptr<test::Inbox<event_t>> events_;
+};
+
+TEST_F(SampleCollectorNodeTest, AcceptsAStillNewPoseAndAnnouncesIt) {
+  ShowStop(0);
+  ASSERT_THAT(inbox_->messages, SizeIs(1));
+  EXPECT_EQ(last().num_samples, 1);
+  EXPECT_EQ(last().revision, 1);
+  EXPECT_FALSE(last().is_finished);
+  ASSERT_THAT(node_->samples(), SizeIs(1));
+  EXPECT_EQ(node_->samples()[0].num_frames, 3);
+  EXPECT_EQ(node_->counters().at("accepted"), 1);
+  // An event for each decision: two frames are too few, the third makes the sample.
+  ASSERT_THAT(events_->messages, SizeIs(3));
+  EXPECT_EQ(events_->messages[0].kind, "rejected");
+  EXPECT_EQ(events_->messages[0].reason, "not yet still for long enough");
+  EXPECT_EQ(last_event().kind, "accepted");
+  EXPECT_EQ(last_event().sample_id, 1);
+}
+
+TEST_F(SampleCollectorNodeTest, HasTheSampleOnTheDiskBeforeItAnnouncesIt) {
+  int num_seen = 0;
+  bus_->Subscribe<samples_t>(
+      rig_.channels.calib_samples, Queue::kEvery, [this, &num_seen](const samples_t& message) {
+        const test::TemporaryFolder copy;
+        std::filesystem::copy_file(folder_.path() / kSamplesLogName, copy.path() / kSamplesLogName);
+        const SessionLog on_disk(copy.path());
+        EXPECT_EQ(on_disk.samples().size(), static_cast<std::size_t>(message.num_samples));
+        EXPECT_EQ(on_disk.Sha256(), message.log_sha256);
+        ++num_seen;
+      });
+  ShowStop(0);
+  ShowStop(1);
+  EXPECT_EQ(num_seen, 2);
+}
+
+TEST_F(SampleCollectorNodeTest, GoesOnWithTheSessionOfTheLastRun) {
+  ShowStop(0);
+  ShowStop(1);
+  Command("discard", 2);
+  const samples_t before = last();
+  Restart();
+  Republish();
+  EXPECT_EQ(last().revision, before.revision);
+  EXPECT_EQ(last().num_samples, before.num_samples);
+  EXPECT_EQ(last().log_sha256, before.log_sha256);
+  ShowStop(0);  // known from the last run
+  EXPECT_THAT(Ids(), ElementsAre(1));
+  ShowStop(2);
+  EXPECT_THAT(Ids(), ElementsAre(1, 3));  // 2 was discarded: never again
+}
+
+TEST_F(SampleCollectorNodeTest, DiscardsTheNewestOrTheNamedSample) {
+  for (int stop = 0; stop < 3; ++stop) ShowStop(stop);
+  Command("discard");
+  EXPECT_THAT(Ids(), ElementsAre(1, 2));
+  EXPECT_EQ(last_event().kind, "discarded");
+  EXPECT_EQ(last_event().sample_id, 3);
+  Command("discard", 1);
+  EXPECT_THAT(Ids(), ElementsAre(2));
+  EXPECT_EQ(last().num_samples, 1);
+  Command("discard", 1);
+  EXPECT_EQ(last_event().kind, "rejected");
+  EXPECT_EQ(last_event().reason, "no sample 1 to discard");
+  EXPECT_THAT(Ids(), ElementsAre(2));
+}
+
+TEST_F(SampleCollectorNodeTest, TakesADiscardedPoseAnew) {
+  ShowStop(0);
+  Command("discard");
+  samples_[0].utime = 500'000'000;  // the board is shown there again, later
+  ShowStop(0);
+  EXPECT_THAT(Ids(), ElementsAre(2));
+}
+
+TEST_F(SampleCollectorNodeTest, ResetTakesAllSamplesAway) {
+  ShowStop(0);
+  ShowStop(1);
+  Command("reset");
+  EXPECT_THAT(Ids(), IsEmpty());
+  EXPECT_EQ(last().num_samples, 0);
+  EXPECT_EQ(last_event().kind, "reset");
+}
+
+TEST_F(SampleCollectorNodeTest, AnswersAnUnknownCommandWithARejection) {
+  Command("explode");
+  EXPECT_EQ(last_event().kind, "rejected");
+  EXPECT_EQ(last_event().reason, "unknown command 'explode'");
+  EXPECT_EQ(node_->counters().at("unknown command"), 1);
+}
+
+TEST_F(SampleCollectorNodeTest, CaptureTakesASinglePair) {
+  Command("capture");
+  const auto frames = test::StillFrames(samples_, 0);
+  test::Send(bus_.get(), rig_.channels.lidar_board, frames[0].lidar);
+  test::Send(bus_.get(), rig_.channels.camera_board, frames[0].camera);
+  test::Send(bus_.get(), rig_.channels.camera_board, frames[1].camera);  // closes the pair
+  ASSERT_THAT(node_->samples(), SizeIs(1));
+  EXPECT_EQ(node_->samples()[0].num_frames, 1);
+}
+
+TEST_F(SampleCollectorNodeTest, FinishesOnlyOnceNoFrameHasComeForASecond) {
+  ShowStop(0);
+  Command("finish");
+  Republish();  // frames have come since the last one
+  EXPECT_FALSE(last().is_finished);
+  ShowStop(1);  // detectors were still at work
+  Republish();
+  EXPECT_FALSE(last().is_finished);
+  Republish();
+  EXPECT_TRUE(last().is_finished);
+  EXPECT_EQ(last_event().kind, "finished");
+  EXPECT_EQ(node_->State(), "finished: 2 samples");
+}
+
+TEST_F(SampleCollectorNodeTest, FinishJudgesTheFramesThatWait) {
+  auto frames = test::StillFrames(samples_, 0);
+  frames.pop_back();  // nothing closes the third pair
+  for (const test::SightingMessages& frame : frames) {
+    test::Send(bus_.get(), rig_.channels.lidar_board, frame.lidar);
+    test::Send(bus_.get(), rig_.channels.camera_board, frame.camera);
+  }
+  EXPECT_THAT(Ids(), IsEmpty());
+  node_->Finish();
+  EXPECT_THAT(Ids(), ElementsAre(1));
+}
+
+TEST_F(SampleCollectorNodeTest, OrderOfArrivalDoesNotMatter) {
+  for (int stop = 0; stop < 4; ++stop) ShowStop(stop);
+  node_->Finish();
+  const std::string as_shown = Sha256OfFile(folder_.path() / kSamplesLogName);
+
+  const test::TemporaryFolder other_folder;
+  Bus bus("memq://");
+  SampleCollectorNode other(rig_, &bus, other_folder.path());
+  for (int stop = 0; stop < 4; ++stop) {  // all of the camera's frames before the lidar's
+    for (const auto& frame : test::StillFrames(samples_, stop)) {
+      test::Send(&bus, rig_.channels.camera_board, frame.camera);
+    }
+  }
+  for (int stop = 0; stop < 4; ++stop) {
+    for (const auto& frame : test::StillFrames(samples_, stop)) {
+      test::Send(&bus, rig_.channels.lidar_board, frame.lidar);
+    }
+  }
+  other.Finish();
+  EXPECT_THAT(other.samples(), SizeIs(4));
+  EXPECT_EQ(Sha256OfFile(other_folder.path() / kSamplesLogName), as_shown);
+}
+
+}  // namespace
+}  // namespace voqcal

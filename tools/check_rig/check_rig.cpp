@@ -38,6 +38,15 @@ void PrintRig(const Rig& rig) {
               ToString(rig.camera_driver.source));
 }
 
+// What calibrate reads of a recording, which also holds what the live modules made of it.
+void PrintInputChannels(const Channels& channels) {
+  std::printf("(%s|%s|%s|%s)\n",
+              channels.lidar_points.c_str(),
+              channels.camera_image.c_str(),
+              channels.camera_info.c_str(),
+              channels.calib_command.c_str());
+}
+
 }  // namespace
 }  // namespace voqcal
 
@@ -45,12 +54,19 @@ int main(int argc, char** argv) {
   CLI::App app("Checks a rig file as every module reads it, and says what it means.", "check_rig");
   std::filesystem::path path;
   bool is_url_only = false;
+  bool is_channels_only = false;
   app.add_option("rig", path, "The rig file (YAML)")->required();
   app.add_flag("--lcm-url", is_url_only, "Print just the LCM URL, for scripts");
-  return voqcal::RunTool(&app, argc, argv, [&path, &is_url_only] {
+  app.add_flag(
+      "--input-channels",
+      is_channels_only,
+      "Print just the channels of sensors and operator, as a pattern for lcm-logplayer -e");
+  return voqcal::RunTool(&app, argc, argv, [&path, &is_url_only, &is_channels_only] {
     const voqcal::Rig rig = voqcal::LoadRig(path);
     if (is_url_only) {
       std::puts(rig.lcm_url.c_str());
+    } else if (is_channels_only) {
+      voqcal::PrintInputChannels(rig.channels);
     } else {
       voqcal::PrintRig(rig);
     }

@@ -6,61 +6,41 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/board/corner_grid.hpp"
+#include "core/board/x_corners.hpp"
+
 namespace voqcal {
 namespace {
 
 using Corners = std::vector<cv::Point2f>;
 
-enum class Finder { kQuads, kRadon };
+// Why a search of our own: on the real session's images (1920 x 1208), and on those images blurred,
+// darkened, shrunk and with noise added, it misses none that cv::findChessboardCorners or
+// cv::findChessboardCornersSB find but for noise that hides squares of 6 px, takes a hundredth of
+// the time of the latter, and where there is no board it ends as soon, while they try hardest.
 
-// One attempt: a finder, and how many pixels of the image's longer side it sees.
-struct Attempt {
-  Finder finder;
-  int max_side_px;
-};
-
-// Cheapest first. On the 30 images of the real session (1920 x 1208) the quads finder takes about 7
-// ms at a third of the size and finds 29, 15 ms at half and finds all; findChessboardCornersSB
-// takes 40 ms at a third (29 found), 80 ms at half (29) and 370 ms at full size (29). The quads
-// finder's own quick check ends a search without a board early; without it one attempt takes 180 ms
-// even at a third.
-constexpr Attempt kAttempts[] = {
-    {Finder::kQuads, 640}, {Finder::kQuads, 960}, {Finder::kRadon, 960}, {Finder::kQuads, 1 << 20}};
-
-cv::Mat Reduced(const cv::Mat& grey, int max_side_px) {
-  const int side_px = std::max(grey.cols, grey.rows);
-  if (side_px <= max_side_px) return grey;
-  const double scale = static_cast<double>(max_side_px) / side_px;
-  cv::Mat reduced;
-  cv::resize(grey, reduced, cv::Size(), scale, scale, cv::INTER_AREA);
-  return reduced;
-}
-
-// A finder's corners in the pixels of `image`; empty if it finds none. It throws on images too
-// small to hold a board: no board, either.
-Corners CoarseCorners(const cv::Mat& image, const cv::Size& pattern, Finder finder) {
-  constexpr int kQuadFlags =
-      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
-  Corners corners;
-  try {
-    const bool is_found = finder == Finder::kQuads
-                              ? cv::findChessboardCorners(image, pattern, corners, kQuadFlags)
-                              : cv::findChessboardCornersSB(image, pattern, corners);
-    if (!is_found) return {};
-  } catch (const cv::Exception&) {
-    return {};
+// The image and its halvings down to a longer side of about 200 px, the smallest last. Small images
+// are cheap, and blur and noise are small in them; large ones show small boards.
+std::vector<cv::Mat> Pyramid(const cv::Mat& grey) {
+  constexpr int kMinSidePx = 200;
+  std::vector<cv::Mat> levels{grey};
+  while (std::max(levels.back().cols, levels.back().rows) / 2 >= kMinSidePx) {
+    cv::Mat half;
+    cv::resize(levels.back(), half, cv::Size(), 0.5, 0.5, cv::INTER_AREA);
+    levels.push_back(half);
   }
-  return corners.size() == static_cast<std::size_t>(pattern.area()) ? corners : Corners{};
+  return levels;
 }
 
-// Pixels of the image that was reduced by area: pixel centres lie at whole numbers in both.
-void Enlarge(const cv::Size& reduced, const cv::Size& full, Corners* corners) {
-  const float scale_x = static_cast<float>(full.width) / static_cast<float>(reduced.width);
-  const float scale_y = static_cast<float>(full.height) / static_cast<float>(reduced.height);
-  for (cv::Point2f& p : *corners) {
+// From the pixels of one level to those of another: pixel centres lie at whole numbers in both.
+Corners Rescaled(Corners corners, const cv::Size& from, const cv::Size& to) {
+  const float scale_x = static_cast<float>(to.width) / static_cast<float>(from.width);
+  const float scale_y = static_cast<float>(to.height) / static_cast<float>(from.height);
+  for (cv::Point2f& p : corners) {
     p.x = (p.x + 0.5f) * scale_x - 0.5f;
     p.y = (p.y + 0.5f) * scale_y - 0.5f;
   }
+  return corners;
 }
 
 // Distance between the two nearest neighbours of the grid.
@@ -78,22 +58,45 @@ double ShortestSide(const Corners& corners, const cv::Size& pattern) {
   return shortest_px;
 }
 
-// cv::cornerSubPix at full size, rather than the finders' own sub-pixel corners: on the real
-// session the reprojection RMS is 0.16 px against 0.18 px of findChessboardCornersSB at full size,
-// and the result does not depend on which attempt came first (to 0.003 px). Half a window of 0.35
-// squares gave the least RMS (0.1: 0.21 px, 0.2: 0.17, 0.5: 0.16) and even its diagonal stays off
-// the next corner.
-bool RefineCorners(const cv::Mat& grey, const cv::Size& pattern, Corners* corners) {
+// cv::cornerSubPix on one level. False if a corner went astray: in an image so blurred that the
+// window holds no edge of its own, corners drift towards the next one, or come back from there
+// exactly to where they started.
+bool RefineOn(const cv::Mat& level, const cv::Size& pattern, Corners* corners) {
+  // Of the real session's images, 0.35 gave the least reprojection RMS (0.1: 0.21 px, 0.2: 0.17,
+  // 0.35 and 0.5: 0.16), and even its diagonal stays off the next corner.
   constexpr double kHalfWindowSquares = 0.35;
-  const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-4);
+  constexpr int kMaxHalfWindowPx = 30;      // more adds time and no accuracy
+  constexpr double kMaxShiftSquares = 0.1;  // a square of 5 px, a coarse corner off by half a pixel
+  const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 40, 1e-4);
+  const double side_px = ShortestSide(*corners, pattern);
   const int half_window_px =
-      std::max(2, static_cast<int>(kHalfWindowSquares * ShortestSide(*corners, pattern)));
+      std::clamp(static_cast<int>(kHalfWindowSquares * side_px), 2, kMaxHalfWindowPx);
+  const Corners start = *corners;
   try {
-    cv::cornerSubPix(grey, *corners, {half_window_px, half_window_px}, {-1, -1}, until);
+    cv::cornerSubPix(level, *corners, {half_window_px, half_window_px}, {-1, -1}, until);
   } catch (const cv::Exception&) {
     return false;  // the window does not fit into the image
   }
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const double shift_px = cv::norm((*corners)[i] - start[i]);
+    if (shift_px == 0 || shift_px > kMaxShiftSquares * side_px) return false;
+  }
   return true;
+}
+
+// The coarse corners of level `found`, refined on the largest level that is sharp enough, in the
+// pixels of level 0. The result does not depend on `found`, to 0.003 px.
+Corners Refined(const std::vector<cv::Mat>& levels,
+                std::size_t found,
+                const Corners& coarse,
+                const cv::Size& pattern) {
+  for (std::size_t i = 0; i <= found; ++i) {
+    Corners corners = Rescaled(coarse, levels[found].size(), levels[i].size());
+    if (RefineOn(levels[i], pattern, &corners)) {
+      return Rescaled(std::move(corners), levels[i].size(), levels[0].size());
+    }
+  }
+  return Rescaled(coarse, levels[found].size(), levels[0].size());
 }
 
 // A grid of corners in the image, x fastest, and the turns that it allows.
@@ -155,14 +158,16 @@ void Orient(Grid* grid) {
 std::optional<std::vector<Eigen::Vector2d>> FindChessboardCorners(const cv::Mat& grey,
                                                                   const BoardSpec& board) {
   const cv::Size pattern(board.num_corners_x, board.num_corners_y);
-  for (const Attempt& attempt : kAttempts) {
-    const cv::Mat reduced = Reduced(grey, attempt.max_side_px);
-    Corners corners = CoarseCorners(reduced, pattern, attempt.finder);
-    if (corners.empty()) continue;
-    Enlarge(reduced.size(), grey.size(), &corners);
-    if (!RefineCorners(grey, pattern, &corners)) continue;
+  const std::vector<cv::Mat> levels = Pyramid(grey);
+  // A board's corners are among those of most contrast; what is beyond is texture and noise.
+  const auto max_corners = static_cast<std::size_t>(std::max(600, 3 * pattern.area()));
+  for (std::size_t level = levels.size(); level-- > 0;) {
+    const Corners coarse = FindCornerGrid(FindXCorners(levels[level], max_corners), pattern);
+    if (coarse.empty()) continue;
     Grid grid{pattern.width, pattern.height, {}};
-    for (const cv::Point2f& p : corners) grid.corners_px.emplace_back(p.x, p.y);
+    for (const cv::Point2f& p : Refined(levels, level, coarse, pattern)) {
+      grid.corners_px.emplace_back(p.x, p.y);
+    }
     Orient(&grid);
     return grid.corners_px;
   }

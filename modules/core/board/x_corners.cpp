@@ -1,0 +1,188 @@
+#include "core/board/x_corners.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <opencv2/imgproc.hpp>
+
+namespace voqcal {
+namespace {
+
+// The circle on which a corner's quarters are told apart: 16 pixels, 3 px away, from pixel x
+// towards pixel y. Larger circles leave the squares of small boards, smaller ones see only blur.
+constexpr int kRadiusPx = 3;
+constexpr int kNumRing = 16;
+constexpr int kRing[kNumRing][2] = {{3, 0},
+                                    {3, 1},
+                                    {2, 2},
+                                    {1, 3},
+                                    {0, 3},
+                                    {-1, 3},
+                                    {-2, 2},
+                                    {-3, 1},
+                                    {-3, 0},
+                                    {-3, -1},
+                                    {-2, -2},
+                                    {-1, -3},
+                                    {0, -3},
+                                    {1, -3},
+                                    {2, -2},
+                                    {3, -1}};
+
+// Grey levels are kept 16-fold, the sum of the smoothing kernel: fractions survive in integers.
+constexpr float kScale = 16.0F;
+constexpr float kMinContrast = 8.0F;    // grey levels; less is noise of 2 levels
+constexpr float kMaxAsymmetry = 0.25F;  // of the contrast; noise alone has about 0.35
+// Least sqrt(-det) of the Hessian, grey levels per px^2. An ideal corner of contrast C under a blur
+// of s px has 0.32 C / s^2: 1 lets a contrast of 30 through up to 3 px of blur, and noise of 2
+// levels (0.4 here) rarely.
+constexpr float kMinSaddle = 3.0F;
+
+cv::Mat Smoothed(const cv::Mat& grey) {
+  const cv::Mat kernel = (cv::Mat_<float>(3, 1) << 1, 2, 1);
+  cv::Mat smooth;
+  cv::sepFilter2D(grey, smooth, CV_16S, kernel, kernel, {-1, -1}, 0, cv::BORDER_REPLICATE);
+  return smooth;
+}
+
+// First and second derivatives of the smoothed image at a pixel, scaled levels per px and px^2.
+struct Derivatives {
+  float x, y, xx, yy, xy;
+};
+
+Derivatives DerivativesAt(const cv::Mat& smooth, int x, int y) {
+  const auto at = [&](int dx, int dy) {
+    return static_cast<float>(smooth.at<short>(y + dy, x + dx));
+  };
+  return {(at(1, 0) - at(-1, 0)) / 2,
+          (at(0, 1) - at(0, -1)) / 2,
+          at(1, 0) - 2 * at(0, 0) + at(-1, 0),
+          at(0, 1) - 2 * at(0, 0) + at(0, -1),
+          (at(1, 1) - at(-1, 1) - at(1, -1) + at(-1, -1)) / 4};
+}
+
+// -det of the Hessian along row y: positive at saddles. The loop is what the compiler vectorises.
+void SaddleRow(const cv::Mat& smooth, int y, std::vector<float>* saddle) {
+  const short* above = smooth.ptr<short>(y - 1);
+  const short* here = smooth.ptr<short>(y);
+  const short* below = smooth.ptr<short>(y + 1);
+  float* out = saddle->data();
+  for (int x = 1; x < smooth.cols - 1; ++x) {
+    const auto xx = static_cast<float>(here[x + 1] - 2 * here[x] + here[x - 1]);
+    const auto yy = static_cast<float>(below[x] - 2 * here[x] + above[x]);
+    const auto xy =
+        0.25F * static_cast<float>(below[x + 1] - below[x - 1] - above[x + 1] + above[x - 1]);
+    out[x] = xy * xy - xx * yy;
+  }
+}
+
+// Where the smoothed surface is level near pixel (x, y): the corner, if it is one.
+std::optional<cv::Point2f> SaddlePoint(const cv::Mat& smooth, int x, int y) {
+  constexpr float kMaxShiftPx = 1.0F;  // farther away another pixel is the maximum
+  const Derivatives d = DerivativesAt(smooth, x, y);
+  const float det = d.xx * d.yy - d.xy * d.xy;
+  const float dx = -(d.yy * d.x - d.xy * d.y) / det;
+  const float dy = -(d.xx * d.y - d.xy * d.x) / det;
+  if (!(std::abs(dx) <= kMaxShiftPx && std::abs(dy) <= kMaxShiftPx)) return {};
+  return cv::Point2f(static_cast<float>(x) + dx, static_cast<float>(y) + dy);
+}
+
+// Mean difference of opposite pixels of the circle.
+float Asymmetry(const std::array<float, kNumRing>& ring) {
+  float sum = 0;
+  for (int k = 0; k < kNumRing / 2; ++k) sum += std::abs(ring[k] - ring[k + kNumRing / 2]);
+  return sum / (kNumRing / 2);
+}
+
+// Where the circle changes shade, as points on the unit circle: rising to bright, falling to dark,
+// rising, falling. Nothing unless it does so exactly four times.
+std::optional<std::array<cv::Point2f, 4>> ShadeChanges(const std::array<float, kNumRing>& ring,
+                                                       float middle) {
+  std::array<cv::Point2f, 4> changes;
+  int num_changes = 0;
+  bool is_first_rising = false;
+  for (int k = 0; k < kNumRing; ++k) {
+    const int next = (k + 1) % kNumRing;
+    const bool is_bright_next = ring[next] > middle;
+    if ((ring[k] > middle) == is_bright_next) continue;
+    if (num_changes == 4) return {};
+    if (num_changes == 0) is_first_rising = is_bright_next;
+    const float t = (middle - ring[k]) / (ring[next] - ring[k]);
+    const cv::Point2f at(
+        static_cast<float>(kRing[k][0]) * (1 - t) + static_cast<float>(kRing[next][0]) * t,
+        static_cast<float>(kRing[k][1]) * (1 - t) + static_cast<float>(kRing[next][1]) * t);
+    changes[num_changes++] = at / std::hypot(at.x, at.y);
+  }
+  if (num_changes != 4) return {};
+  if (!is_first_rising) std::rotate(changes.begin(), changes.begin() + 1, changes.end());
+  return changes;
+}
+
+// Unit direction of the line through two points of the circle that should be opposite; nothing if
+// they are not: a corner half a pixel off the circle's centre turns each by up to 10 degrees, noise
+// and uneven light by as much again.
+std::optional<cv::Point2f> LineThrough(const cv::Point2f& a, const cv::Point2f& b) {
+  constexpr float kMaxCosine = -0.76F;  // 40 degrees off
+  if (a.dot(b) > kMaxCosine) return {};
+  const cv::Point2f difference = a - b;
+  return difference / std::hypot(difference.x, difference.y);
+}
+
+std::optional<XCorner> XCornerAt(const cv::Mat& smooth, int x, int y) {
+  std::array<float, kNumRing> ring;
+  float darkest = HUGE_VALF;
+  float brightest = -HUGE_VALF;
+  for (int k = 0; k < kNumRing; ++k) {
+    ring[k] = static_cast<float>(smooth.ptr<short>(y + kRing[k][1])[x + kRing[k][0]]);
+    darkest = std::min(darkest, ring[k]);
+    brightest = std::max(brightest, ring[k]);
+  }
+  XCorner corner;
+  corner.contrast = (brightest - darkest) / kScale;
+  if (corner.contrast < kMinContrast) return {};
+  if (Asymmetry(ring) > kMaxAsymmetry * (brightest - darkest)) return {};
+  const auto changes = ShadeChanges(ring, (brightest + darkest) / 2);
+  if (!changes) return {};
+  const auto rising = LineThrough((*changes)[0], (*changes)[2]);
+  const auto falling = LineThrough((*changes)[1], (*changes)[3]);
+  if (!rising || !falling) return {};
+  constexpr float kMinSine = 0.25F;  // 15 degrees: a board seen at 80 degrees, corner on
+  if (rising->cross(*falling) < kMinSine) return {};
+  corner.axes = {*rising, *falling};
+  const auto position = SaddlePoint(smooth, x, y);
+  if (!position) return {};
+  corner.position_px = *position;
+  return corner;
+}
+
+}  // namespace
+
+std::vector<XCorner> FindXCorners(const cv::Mat& grey, std::size_t max_corners) {
+  if (std::min(grey.cols, grey.rows) <= 2 * kRadiusPx) return {};
+  const cv::Mat smooth = Smoothed(grey);
+  const float min_saddle = kMinSaddle * kMinSaddle * kScale * kScale;
+  std::vector<XCorner> corners;
+  std::vector<float> above(grey.cols), here(grey.cols), below(grey.cols);
+  SaddleRow(smooth, kRadiusPx - 1, &here);
+  SaddleRow(smooth, kRadiusPx, &below);
+  for (int y = kRadiusPx; y < grey.rows - kRadiusPx; ++y) {
+    std::swap(above, here);
+    std::swap(here, below);
+    SaddleRow(smooth, y + 1, &below);
+    for (int x = kRadiusPx; x < grey.cols - kRadiusPx; ++x) {
+      const float s = here[x];
+      if (s < min_saddle || s <= here[x - 1] || s < here[x + 1]) continue;
+      if (s <= *std::max_element(&above[x - 1], &above[x + 2])) continue;
+      if (s < *std::max_element(&below[x - 1], &below[x + 2])) continue;
+      if (const auto corner = XCornerAt(smooth, x, y)) corners.push_back(*corner);
+    }
+  }
+  std::stable_sort(corners.begin(), corners.end(), [](const XCorner& a, const XCorner& b) {
+    return a.contrast > b.contrast;
+  });
+  if (corners.size() > max_corners) corners.resize(max_corners);
+  return corners;
+}
+
+}  // namespace voqcal

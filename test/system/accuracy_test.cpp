@@ -1,6 +1,8 @@
 // How good the result of the real programs is: on a simulated rig, whose truth is known, and on the
 // real session of the paper's authors. The bounds are those that the project was asked to reach.
 
+#include <iostream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -41,6 +43,7 @@ TEST(Accuracy, SimulatedRigOf40PosesIsFoundWithin150MillidegreesAnd10Millimetres
   };
   const test::Outcome rotation = compare_with("--max-rotation-deg", "0.15");
   EXPECT_EQ(rotation.status, 0) << rotation.out << rotation.err;
+  std::cout << rotation.out;  // the figures, for who reads the tests' log
   const test::Outcome translation = compare_with("--max-translation-mm", "10");
   EXPECT_EQ(translation.status, 0) << translation.out << translation.err;
   const test::Outcome impossible = compare_with("--max-translation-mm", "1e-9");
@@ -59,6 +62,7 @@ class RealSession : public ::testing::Test {
   YAML::Node Calibrate(const std::string& input, const std::string& file) {
     calibrate_ = test::Run({test::Program("calibrate"), "--rig", rig_, input, file, "--out", out_});
     EXPECT_EQ(calibrate_.status, 0) << calibrate_.err;
+    std::cout << calibrate_.out;  // the figures, for who reads the tests' log
     return YAML::LoadFile(out_ + "/extrinsic.yaml");
   }
 

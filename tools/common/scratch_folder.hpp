@@ -20,6 +20,7 @@ class ScratchFolder {
 
  private:
   std::filesystem::path path_;
+  std::filesystem::path parents_end_;  // the nearest folder above that was there before
 };
 
 }  // namespace voqcal

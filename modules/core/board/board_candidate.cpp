@@ -73,23 +73,20 @@ struct Measurement {
   std::vector<std::size_t> board_hits;  // for view.Beam()
 };
 
-/// A first rectangle on the patch's own plane.
-Measurement Begin(const PlanarPatch& patch,
-                  const std::vector<LidarBeam>& beams,
-                  const BoardSpec& board) {
+/// The beams around a patch, on its own plane.
+Measurement Begin(const PlanarPatch& patch, const BeamIndex& beams, const BoardSpec& board) {
   PlaneFit plane = patch.plane;
   plane.point_m = patch.middle_m - plane.DistanceM(patch.middle_m) * plane.normal;
   const double diagonal_m = std::hypot(board.width_m, board.height_m);
   Measurement m{PatchView(beams, plane.point_m, diagonal_m), PlaneFrame(plane), {}, {}, {}};
   m.model = ModelOf(board, plane.point_m.norm());
   m.view.Classify(m.frame);
-  m.outline = SearchOutline(m.view.Outline(), m.model, Eigen::Vector2d::Zero());
   return m;
 }
 
-/// Plane, then outline: the outline says which points are the board's, and the plane where the
-/// beams meet it. False if too few points are left.
-bool RefineOnce(Measurement* m) {
+/// The plane of the points in the outline, and where the beams meet it. False if too few points are
+/// left.
+bool RefinePlane(Measurement* m) {
   constexpr double kPlaneScaleM = 0.02;  // Cauchy: twice the noise
   constexpr double kMarginM = -0.005;    // the outermost returns are partly of what lies behind
   m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, kMarginM);
@@ -103,9 +100,8 @@ bool RefineOnce(Measurement* m) {
   m->frame = PlaneFrame(plane);
   m->view.Classify(m->frame);
   const double angle_rad = std::atan2(m->frame.e2.dot(width_axis), m->frame.e1.dot(width_axis));
-  const RectanglePose start{Eigen::Vector2d::Zero(), angle_rad};
-  m->model.lean = LeanOf(m->frame, start);
-  m->outline = RefineOutline(m->view.Outline(), m->model, start);
+  m->outline.pose = {Eigen::Vector2d::Zero(), angle_rad};
+  m->model.lean = LeanOf(m->frame, m->outline.pose);
   return true;
 }
 
@@ -196,16 +192,25 @@ bool AreLengthsNear(const std::array<double, 4>& measured_m, const std::array<do
 }  // namespace
 
 Expected<LidarBoard, LidarBoardMiss> MeasureBoard(const PlanarPatch& patch,
-                                                  const std::vector<LidarBeam>& beams,
+                                                  const BeamIndex& beams,
                                                   const PointCloud& cloud_lidar_m,
                                                   const BoardSpec& board) {
-  constexpr int kNumRounds = 3;
   constexpr double kRoughly = 2.0;
   constexpr double kMinCovered = 0.8;
   Measurement m = Begin(patch, beams, board);
-  for (int round = 0; round < kNumRounds; ++round) {
-    if (!AgreementOf(m).IsBoardLike(kRoughly)) return LidarBoardMiss::kSizeMismatch;
-    if (!RefineOnce(&m)) return LidarBoardMiss::kNoPlane;
+  const std::vector<OutlineBeam>& outline_beams = m.view.Outline();
+  if (!CouldShowBoard(outline_beams, m.model)) return LidarBoardMiss::kSizeMismatch;
+  m.outline = SearchOutline(outline_beams, m.model, Eigen::Vector2d::Zero());
+  // Plane and outline in turns: the outline says which points are the board's, and the plane where
+  // the beams meet it.
+  for (const double first_blur_m : {SearchBlurM(m.model) / 2, 3 * m.model.blur_m, 0.0}) {
+    const Agreement agreement = AgreementOf(m);
+    if (!agreement.IsBoardLike(kRoughly)) return LidarBoardMiss::kSizeMismatch;
+    if (agreement.covered < kMinCovered / kRoughly) return LidarBoardMiss::kOutlineOpen;
+    if (!RefinePlane(&m)) return LidarBoardMiss::kNoPlane;
+    const bool is_last = first_blur_m == 0.0;
+    m.outline = is_last ? RefineOutline(outline_beams, m.model, m.outline.pose)
+                        : SharpenOutline(outline_beams, m.model, m.outline.pose, first_blur_m);
   }
   if (!Finish(&m)) return LidarBoardMiss::kNoPlane;
   const Agreement agreement = AgreementOf(m);

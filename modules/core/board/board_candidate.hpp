@@ -17,7 +17,7 @@ namespace voqcal {
 ///
 /// @param beams  All returns of the sweep, also those behind the patch: they show where it ends.
 Expected<LidarBoard, LidarBoardMiss> MeasureBoard(const PlanarPatch& patch,
-                                                  const std::vector<LidarBeam>& beams,
+                                                  const BeamIndex& beams,
                                                   const PointCloud& cloud_lidar_m,
                                                   const BoardSpec& board);
 

@@ -1,9 +1,26 @@
 #include "core/board/lidar_beams.hpp"
 
 #include <algorithm>
-#include <cstddef>
+#include <cmath>
 
 namespace voqcal {
+namespace {
+
+/// Grows with the azimuth from 0 to 4 in a turn, without trigonometry.
+double PseudoAzimuth(double x, double y) {
+  const double sum = std::abs(x) + std::abs(y);
+  if (sum == 0.0) return 0.0;
+  const double ratio = y / sum;
+  if (x < 0) return 2.0 - ratio;
+  return ratio < 0 ? 4.0 + ratio : ratio;
+}
+
+std::size_t SectorOf(double pseudo_azimuth, std::size_t num_sectors) {
+  return static_cast<std::size_t>(pseudo_azimuth / 4.0 * static_cast<double>(num_sectors)) %
+         num_sectors;
+}
+
+}  // namespace
 
 std::vector<LidarBeam> ValidBeams(const PointCloud& cloud_lidar_m, double min_range_m) {
   constexpr double kMinRangeM = 1e-3;  // the origin stands for "no return"
@@ -18,6 +35,55 @@ std::vector<LidarBeam> ValidBeams(const PointCloud& cloud_lidar_m, double min_ra
     beams.push_back({position_m / range_m, range_m, static_cast<std::uint32_t>(i)});
   }
   return beams;
+}
+
+bool IsInShare(std::size_t i, std::size_t share, std::size_t num) {
+  if (share >= num) return true;
+  const auto place = static_cast<std::uint32_t>(i * 0x9E3779B9U);  // i * golden ratio * 2^32
+  return static_cast<double>(place) * static_cast<double>(num) <
+         4294967296.0 * static_cast<double>(share);
+}
+
+BeamIndex::BeamIndex(const std::vector<LidarBeam>& beams) : beams_(beams.size()) {
+  std::vector<std::uint8_t> sectors;
+  sectors.reserve(beams.size());
+  for (const LidarBeam& beam : beams) {
+    const std::size_t sector =
+        SectorOf(PseudoAzimuth(beam.direction.x(), beam.direction.y()), kNumSectors);
+    sectors.push_back(static_cast<std::uint8_t>(sector));
+    ++begin_[sector + 1];
+  }
+  for (std::size_t i = 0; i < kNumSectors; ++i) begin_[i + 1] += begin_[i];
+  std::array<std::size_t, kNumSectors + 1> next = begin_;
+  for (std::size_t i = 0; i < beams.size(); ++i) beams_[next[sectors[i]]++] = beams[i];
+}
+
+void BeamIndex::AppendCone(const Eigen::Vector3d& axis,
+                           double half_angle_rad,
+                           std::vector<LidarBeam>* cone) const {
+  const double cosine = std::cos(half_angle_rad);
+  const double level = axis.head<2>().norm();
+  std::size_t first = 0;
+  std::size_t num_sectors = kNumSectors;
+  // A circle of angular radius h at elevation e spans +-asin(sin h / cos e) of azimuth, unless it
+  // contains the vertical.
+  const double sine = std::sin(half_angle_rad);
+  if (cosine > 0 && sine < level) {
+    const double azimuth_rad = std::atan2(axis.y(), axis.x());
+    const double span_rad = std::asin(sine / level);
+    const auto sector_at = [](double angle_rad) {
+      return SectorOf(PseudoAzimuth(std::cos(angle_rad), std::sin(angle_rad)), kNumSectors);
+    };
+    first = sector_at(azimuth_rad - span_rad);
+    const std::size_t last = sector_at(azimuth_rad + span_rad);
+    num_sectors = (last + kNumSectors - first) % kNumSectors + 1;
+  }
+  for (std::size_t k = 0; k < num_sectors; ++k) {
+    const std::size_t sector = (first + k) % kNumSectors;
+    for (std::size_t i = begin_[sector]; i < begin_[sector + 1]; ++i) {
+      if (axis.dot(beams_[i].direction) > cosine) cone->push_back(beams_[i]);
+    }
+  }
 }
 
 }  // namespace voqcal

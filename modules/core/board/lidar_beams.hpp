@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,5 +23,27 @@ struct LidarBeam {
 /// The returns of a cloud at `min_range_m` or farther, in the cloud's order. Points that are not
 /// finite or lie at the origin (beams without a return) are left out.
 std::vector<LidarBeam> ValidBeams(const PointCloud& cloud_lidar_m, double min_range_m);
+
+/// Whether the i-th of `num` things is among about `share` evenly taken ones. Multiples of the
+/// golden ratio modulo 1 fall evenly (Weyl) in step with no scan pattern; every n-th beam of an
+/// ordered sweep may be one ring.
+bool IsInShare(std::size_t i, std::size_t share, std::size_t num);
+
+/// Beams by direction: those of a cone are found without looking at all.
+class BeamIndex {
+ public:
+  explicit BeamIndex(const std::vector<LidarBeam>& beams);
+
+  /// Appends the beams within `half_angle_rad` of `axis` (unit length).
+  void AppendCone(const Eigen::Vector3d& axis,
+                  double half_angle_rad,
+                  std::vector<LidarBeam>* cone) const;
+
+ private:
+  static constexpr std::size_t kNumSectors = 128;  // about 3 degrees of azimuth each
+
+  std::vector<LidarBeam> beams_;                      // by sector, then as they came
+  std::array<std::size_t, kNumSectors + 1> begin_{};  // of each sector
+};
 
 }  // namespace voqcal

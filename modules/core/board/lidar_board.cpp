@@ -25,9 +25,12 @@ void RequireUsable(const char* what, const std::vector<std::string>& problems) {
 /// Where the board may be. Returns elsewhere still show where it ends.
 std::vector<Eigen::Vector3d> SearchedPoints(const std::vector<LidarBeam>& beams,
                                             const LidarBoardOptions& options) {
+  constexpr std::size_t kMaxPoints = 150000;  // bounds the time; patches need no more
   std::vector<Eigen::Vector3d> points_m;
-  points_m.reserve(beams.size());
-  for (const LidarBeam& beam : beams) {
+  points_m.reserve(std::min(beams.size(), kMaxPoints));
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const LidarBeam& beam = beams[i];
+    if (!IsInShare(i, kMaxPoints, beams.size())) continue;
     if (beam.range_m > options.max_range_m) continue;
     const Eigen::Vector3d position_m = beam.PositionM();
     if (options.region_of_interest) {
@@ -123,10 +126,11 @@ Expected<std::vector<LidarBoard>, LidarBoardMiss> DetectLidarBoard(
 
   std::vector<PlanarPatch> patches = FindPlanarPatches(points_m, PatchesOf(board));
   if (patches.size() > kMaxPatches) patches.resize(kMaxPatches);
+  const BeamIndex index(beams);
   std::vector<LidarBoard> found;
   LidarBoardMiss miss = LidarBoardMiss::kNoPlane;  // of the patch that came closest
   for (const PlanarPatch& patch : patches) {
-    auto measured = MeasureBoard(patch, beams, cloud_lidar_m, board);
+    auto measured = MeasureBoard(patch, index, cloud_lidar_m, board);
     if (measured)
       found.push_back(std::move(*measured));
     else

@@ -21,8 +21,9 @@ Agreement Compare(const std::vector<OutlineBeam>& beams,
   std::array<std::array<bool, kNumFields>, kNumFields> is_covered{};
   std::array<double, 2> inside{};
   std::array<double, 2> outside{};
+  const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
   for (const OutlineBeam& beam : beams) {
-    const Eigen::Vector2d q_m = pose.ToRectangle(beam.position_m);
+    const Eigen::Vector2d q_m = T_rectangle_plane * beam.position_m;
     const double out_m =
         std::max(std::abs(q_m.x()) - model.width_m / 2, std::abs(q_m.y()) - model.height_m / 2);
     if (out_m < -kMarginM) inside[beam.is_hit] += 1;
@@ -36,12 +37,45 @@ Agreement Compare(const std::vector<OutlineBeam>& beams,
   }
   Agreement agreement;
   agreement.hits_inside = inside[1] / std::max(inside[0] + inside[1], 1.0);
-  agreement.hits_outside = outside[1] / std::max(outside[0] + outside[1], 1.0);
+  // Beams past the board that return nothing (the sky, a cropped cloud) are misses too: as many as
+  // the density of beams inside suggests.
+  const auto area_m2 = [&model](double grow_m) {
+    return (model.width_m + 2 * grow_m) * (model.height_m + 2 * grow_m);
+  };
+  const double num_expected =
+      (inside[0] + inside[1]) * (area_m2(kBorderM) - area_m2(kMarginM)) / area_m2(-kMarginM);
+  agreement.hits_outside = outside[1] / std::max({outside[0] + outside[1], num_expected, 1.0});
   for (const auto& row : is_covered) {
     agreement.covered +=
         static_cast<double>(std::count(row.begin(), row.end(), true)) / (kNumFields * kNumFields);
   }
   return agreement;
+}
+
+bool CouldShowBoard(const std::vector<OutlineBeam>& beams, const OutlineModel& model) {
+  constexpr double kMinHitsInside = 0.7;
+  // A person and a pole in the plane fill a tenth of the surroundings; where these have no returns
+  // (a cropped cloud, the sky), they are still few beside the board's own.
+  constexpr double kMaxHitsOutside = 0.2;
+  constexpr double kMaxHitsPerOwn = 0.3;
+  const double shorter_m = std::min(model.width_m, model.height_m);
+  const double off_m = shorter_m / 6;  // of the patch's middle from the board's
+  const double inside_m = shorter_m / 2 - off_m;
+  const double outside_m = std::hypot(model.width_m, model.height_m) / 2 + off_m;
+  std::array<double, 2> inside{};
+  std::array<double, 2> outside{};
+  double num_own = 0.0;
+  for (const OutlineBeam& beam : beams) {
+    const double square_m2 = beam.position_m.squaredNorm();
+    if (square_m2 < inside_m * inside_m) inside[beam.is_hit] += 1;
+    if (square_m2 > outside_m * outside_m)
+      outside[beam.is_hit] += 1;
+    else
+      num_own += beam.is_hit;
+  }
+  return inside[1] > 0 && inside[1] >= kMinHitsInside * (inside[0] + inside[1]) &&
+         outside[1] <=
+             std::max(kMaxHitsOutside * (outside[0] + outside[1]), kMaxHitsPerOwn * num_own);
 }
 
 bool IsSeen(const OutlineEdge& edge) {

@@ -22,6 +22,10 @@ Agreement Compare(const std::vector<OutlineBeam>& beams,
                   const OutlineModel& model,
                   const RectanglePose& pose);
 
+/// Whether beams around a patch's middle, the origin, may show the board at any angle: hits all
+/// over a disc well inside it, hardly any beyond its diagonal. Cheap: most patches fail it.
+bool CouldShowBoard(const std::vector<OutlineBeam>& beams, const OutlineModel& model);
+
 /// An edge is seen if beams miss beyond it, or if at least the hits come up to it.
 bool IsSeen(const OutlineEdge& edge);
 

@@ -49,9 +49,10 @@ std::vector<NearBeam> BeamsNear(const std::vector<OutlineBeam>& beams,
                                 const Side& side,
                                 double window_m,
                                 double corner_m) {
+  const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
   std::vector<NearBeam> near;
   for (const OutlineBeam& beam : beams) {
-    const Eigen::Vector2d q_m = pose.ToRectangle(beam.position_m);
+    const Eigen::Vector2d q_m = T_rectangle_plane * beam.position_m;
     const double outside_m = side.outward.dot(q_m) - side.half_depth_m;
     const double along_m = side.along.dot(q_m);
     if (std::abs(outside_m) > window_m || std::abs(along_m) > side.half_length_m - corner_m)
@@ -87,7 +88,7 @@ Eigen::Vector2d FitLine(const std::vector<NearBeam>& near,
     step[0] = std::clamp(step[0], -window_m / 4, window_m / 4);
     step[1] = std::clamp(step[1], -0.1, 0.1);
     line += step;
-    if (step.norm() < 1e-7) break;
+    if (step.norm() < 1e-6) break;  // a micrometre
   }
   return line;
 }

@@ -9,6 +9,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "core/board/lidar_beams.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -177,32 +179,49 @@ OutlineFit StartAt(const OutlineModel& model, const RectanglePose& pose) {
   return start;
 }
 
-/// The beams within `reach_m` of the sides of the rectangle: the others do not move it.
+/// The beams that are near the sides of the rectangle: the others do not move it.
 std::vector<OutlineBeam> BeamsNearSides(const std::vector<OutlineBeam>& beams,
                                         const OutlineModel& model,
-                                        const RectanglePose& pose,
-                                        double reach_m) {
+                                        const RectanglePose& pose) {
+  const double reach_m = std::min(model.width_m, model.height_m) / 5;
   const Eigen::Array2d half_m(model.width_m / 2, model.height_m / 2);
+  const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
   std::vector<OutlineBeam> near;
   for (const OutlineBeam& beam : beams) {
-    const double outside_m = (pose.ToRectangle(beam.position_m).array().abs() - half_m).maxCoeff();
+    const Eigen::Vector2d q_m = T_rectangle_plane * beam.position_m;
+    const double outside_m = (q_m.array().abs() - half_m).maxCoeff();
     if (std::abs(outside_m) < reach_m) near.push_back(beam);
   }
   return near;
 }
 
-/// Every n-th beam, so that about `max_num` are left.
+/// About `max_num` of them, evenly taken whatever the beams' order.
 std::vector<OutlineBeam> Thinned(const std::vector<OutlineBeam>& beams, std::size_t max_num) {
-  const std::size_t stride = beams.size() / max_num + 1;
+  if (beams.size() <= max_num) return beams;
   std::vector<OutlineBeam> thinned;
-  for (std::size_t i = 0; i < beams.size(); i += stride) thinned.push_back(beams[i]);
+  thinned.reserve(max_num + max_num / 8);
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (IsInShare(i, max_num, beams.size())) thinned.push_back(beams[i]);
+  }
   return thinned;
+}
+
+OutlineModel WithBlur(OutlineModel model, double blur_m) {
+  model.blur_m = blur_m;
+  return model;
 }
 
 }  // namespace
 
-Eigen::Vector2d RectanglePose::ToRectangle(const Eigen::Vector2d& position_m) const {
-  return Eigen::Rotation2Dd(-angle_rad) * (position_m - centre_m);
+Eigen::Isometry2d RectanglePose::T_rectangle_plane() const {
+  Eigen::Isometry2d T_plane_rectangle = Eigen::Isometry2d::Identity();
+  T_plane_rectangle.linear() = Eigen::Rotation2Dd(angle_rad).toRotationMatrix();
+  T_plane_rectangle.translation() = centre_m;
+  return T_plane_rectangle.inverse();
+}
+
+double SearchBlurM(const OutlineModel& model) {
+  return std::min(model.width_m, model.height_m) / 12;
 }
 
 Eigen::Matrix3d OutlineFit::PoseCovariance() const {
@@ -215,37 +234,46 @@ OutlineFit EvaluateOutline(const std::vector<OutlineBeam>& beams,
   return Differentiate(beams, model, at).fit;
 }
 
-OutlineFit RefineOutline(const std::vector<OutlineBeam>& beams,
-                         const OutlineModel& model,
-                         const RectanglePose& start) {
-  constexpr int kMaxWideIterations = 8;
-  constexpr int kMaxIterations = 15;
-  const double reach_m = std::min(model.width_m, model.height_m) / 5;
-  const std::vector<OutlineBeam> near = BeamsNearSides(beams, model, start, reach_m);
-  OutlineModel wide = model;
-  wide.blur_m = 2 * model.blur_m;
-  const OutlineFit rough = Refine(near, wide, StartAt(model, start), kMaxWideIterations);
-  return EvaluateOutline(beams, model, Refine(near, model, rough, kMaxIterations));
-}
-
 OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
                          const OutlineModel& model,
                          const Eigen::Vector2d& centre_m) {
   constexpr int kNumAngles = 6;  // over half a turn: 30 degrees, within reach of the wide blur
-  constexpr int kNumSteps = 5;
+  constexpr int kNumFirstSteps = 2;
+  constexpr int kNumSteps = 4;
   constexpr std::size_t kNumBeams = 250;
-  constexpr std::size_t kNumFineBeams = 1000;
   const std::vector<OutlineBeam> few = Thinned(beams, kNumBeams);
-  OutlineModel wide = model;
-  wide.blur_m = std::max(model.blur_m, std::min(model.width_m, model.height_m) / 12);
+  const OutlineModel wide = WithBlur(model, std::max(model.blur_m, SearchBlurM(model)));
   OutlineFit best;
   for (int i = 0; i < kNumAngles; ++i) {
     const OutlineFit fit =
-        Refine(few, wide, StartAt(model, {centre_m, kPi * i / kNumAngles}), kNumSteps);
+        Refine(few, wide, StartAt(model, {centre_m, kPi * i / kNumAngles}), kNumFirstSteps);
     if (i == 0 || fit.log_likelihood > best.log_likelihood) best = fit;
   }
-  wide.blur_m = std::sqrt(wide.blur_m * model.blur_m);
-  return Refine(Thinned(beams, kNumFineBeams), wide, best, kNumSteps);
+  return Refine(few, wide, best, kNumSteps);
+}
+
+OutlineFit SharpenOutline(const std::vector<OutlineBeam>& beams,
+                          const OutlineModel& model,
+                          const RectanglePose& start,
+                          double first_blur_m) {
+  constexpr int kNumSteps = 4;
+  constexpr double kShrink = 3.0;
+  constexpr std::size_t kNumBeams = 500;
+  const std::vector<OutlineBeam> few = Thinned(BeamsNearSides(beams, model, start), kNumBeams);
+  OutlineFit fit = StartAt(model, start);
+  for (double blur_m = first_blur_m; blur_m > model.blur_m; blur_m /= kShrink) {
+    fit = Refine(few, WithBlur(model, blur_m), fit, kNumSteps);
+  }
+  return fit;
+}
+
+OutlineFit RefineOutline(const std::vector<OutlineBeam>& beams,
+                         const OutlineModel& model,
+                         const RectanglePose& start) {
+  constexpr int kMaxIterations = 15;
+  const OutlineFit rough = SharpenOutline(beams, model, start, 2 * model.blur_m);
+  const std::vector<OutlineBeam> near = BeamsNearSides(beams, model, start);
+  return EvaluateOutline(beams, model, Refine(near, model, rough, kMaxIterations));
 }
 
 }  // namespace voqcal

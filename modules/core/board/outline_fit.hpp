@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace voqcal {
 
@@ -21,7 +22,7 @@ struct RectanglePose {
   double angle_rad = 0.0;  ///< From the plane's first axis to the rectangle's width.
 
   /// From the plane's axes to the rectangle's: x along the width, y along the height.
-  Eigen::Vector2d ToRectangle(const Eigen::Vector2d& position_m) const;
+  Eigen::Isometry2d T_rectangle_plane() const;
 };
 
 /// Probability that a beam hits: the unit step at each side of the rectangle, blurred by the beam's
@@ -78,16 +79,25 @@ OutlineFit EvaluateOutline(const std::vector<OutlineBeam>& beams,
                            const OutlineModel& model,
                            const OutlineFit& at);
 
+/// The blur of SearchOutline: a twelfth of the shorter edge.
+double SearchBlurM(const OutlineModel& model);
+
+/// The best of many angles about `centre_m`, found with a wide blur and few beams: good enough to
+/// reject a patch that is not the board, and for SharpenOutline to start from.
+OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
+                         const OutlineModel& model,
+                         const Eigen::Vector2d& centre_m);
+
+/// From `start` with a blur of `first_blur_m`, then ever less, down to the model's; few beams.
+OutlineFit SharpenOutline(const std::vector<OutlineBeam>& beams,
+                          const OutlineModel& model,
+                          const RectanglePose& start,
+                          double first_blur_m);
+
 /// The most likely rectangle of the model's size near `start`: Fisher scoring (expected second
 /// derivatives) with Levenberg-Marquardt damping.
 OutlineFit RefineOutline(const std::vector<OutlineBeam>& beams,
                          const OutlineModel& model,
                          const RectanglePose& start);
-
-/// The best of many angles about `centre_m`, found with a wide blur and few beams: good enough to
-/// reject a patch that is not the board, and for RefineOutline to start from.
-OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
-                         const OutlineModel& model,
-                         const Eigen::Vector2d& centre_m);
 
 }  // namespace voqcal

@@ -9,19 +9,17 @@ namespace voqcal {
 PlaneFrame::PlaneFrame(const PlaneFit& fit)
     : plane(fit), e1(fit.normal.unitOrthogonal()), e2(fit.normal.cross(e1)) {}
 
-PatchView::PatchView(const std::vector<LidarBeam>& beams,
-                     const Eigen::Vector3d& middle_m,
-                     double radius_m)
+PatchView::PatchView(const BeamIndex& beams, const Eigen::Vector3d& middle_m, double radius_m)
     : radius_m_(radius_m) {
   constexpr std::size_t kMaxBeams = 20000;  // bounds the time on absurdly dense clouds
-  const Eigen::Vector3d axis = middle_m.normalized();
-  const double cos_half_angle = std::cos(std::atan2(radius_m, middle_m.norm()));
-  std::vector<LidarBeam> inside;
-  for (const LidarBeam& beam : beams) {
-    if (axis.dot(beam.direction) > cos_half_angle) inside.push_back(beam);
+  const double distance_m = middle_m.norm();
+  beams.AppendCone(middle_m / distance_m, std::atan2(radius_m, distance_m), &beams_);
+  if (beams_.size() <= kMaxBeams) return;
+  std::size_t num_kept = 0;
+  for (std::size_t i = 0; i < beams_.size(); ++i) {
+    if (IsInShare(i, kMaxBeams, beams_.size())) beams_[num_kept++] = beams_[i];
   }
-  const std::size_t stride = inside.size() / kMaxBeams + 1;
-  for (std::size_t i = 0; i < inside.size(); i += stride) beams_.push_back(inside[i]);
+  beams_.resize(num_kept);
 }
 
 void PatchView::Classify(const PlaneFrame& frame) {
@@ -33,6 +31,7 @@ void PatchView::Classify(const PlaneFrame& frame) {
   // the board: neither tells where the board ends.
   constexpr double kMixedM = 0.10;
   outline_.clear();
+  outline_.reserve(beams_.size());
   hits_.clear();
   const double offset_m = frame.plane.normal.dot(frame.plane.point_m);
   for (std::size_t i = 0; i < beams_.size(); ++i) {
@@ -55,9 +54,10 @@ std::vector<std::size_t> PatchView::HitsInside(const PlaneFrame& frame,
                                                const OutlineModel& model,
                                                const RectanglePose& pose,
                                                double margin_m) const {
+  const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
   std::vector<std::size_t> inside;
   for (const std::size_t i : hits_) {
-    const Eigen::Vector2d q_m = pose.ToRectangle(frame.ToPlane(beams_[i].PositionM()));
+    const Eigen::Vector2d q_m = T_rectangle_plane * frame.ToPlane(beams_[i].PositionM());
     if (std::abs(q_m.x()) > model.width_m / 2 + margin_m) continue;
     if (std::abs(q_m.y()) > model.height_m / 2 + margin_m) continue;
     inside.push_back(i);

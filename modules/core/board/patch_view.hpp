@@ -31,7 +31,7 @@ struct PlaneFrame {
 class PatchView {
  public:
   /// Keeps the beams in the cone that covers `radius_m` around `middle_m`.
-  PatchView(const std::vector<LidarBeam>& beams, const Eigen::Vector3d& middle_m, double radius_m);
+  PatchView(const BeamIndex& beams, const Eigen::Vector3d& middle_m, double radius_m);
 
   /// Tells hits from misses against `frame`, within the radius of its origin.
   void Classify(const PlaneFrame& frame);

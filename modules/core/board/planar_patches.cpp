@@ -37,11 +37,10 @@ std::vector<CellSurface> FitSurfaces(const VoxelGrid& grid, const PatchSearchOpt
   // scan line spreads along one axis only.
   const double max_thickness_m = options.band_m / 2;
   const double min_width_m = options.voxel_m / 5;
-  const std::vector<VoxelGrid::Cell>& cells = grid.Cells();
-  std::vector<CellSurface> surfaces(cells.size());
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  std::vector<CellSurface> surfaces(grid.NumCells());
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
     PointMoments around;
-    grid.ForEachNear(i, 1, [&](std::size_t near) { around.Add(cells[near].moments); });
+    grid.ForEachNear(i, 1, [&](std::size_t near) { around.Add(grid.Moments(near)); });
     if (around.num < kMinPoints || IsBulky(around, max_thickness_m)) continue;
     surfaces[i].plane = FitPlane(around);
     surfaces[i].is_planar = surfaces[i].plane.spread_m[0] < max_thickness_m &&
@@ -74,14 +73,13 @@ void Grow(std::size_t seed,
           std::vector<CellSurface>* surfaces,
           std::vector<std::size_t>* members) {
   constexpr double kMinNormalCosine = 0.9;  // 26 degrees: surfaces of small cells are rough
-  const std::vector<VoxelGrid::Cell>& cells = grid.Cells();
   PlaneFit plane = (*surfaces)[seed].plane;
   PointMoments moments;
   std::size_t num_at_fit = 27;  // the surface is about as good as this many cells
   members->assign(1, seed);
   (*surfaces)[seed].patch = patch;
   for (std::size_t next = 0; next < members->size(); ++next) {
-    moments.Add(cells[(*members)[next]].moments);
+    moments.Add(grid.Moments((*members)[next]));
     if (next >= 2 * num_at_fit) {
       plane = FitPlane(moments);
       num_at_fit = next;
@@ -89,7 +87,7 @@ void Grow(std::size_t seed,
     grid.ForEachNear((*members)[next], 2, [&](std::size_t i) {
       CellSurface& surface = (*surfaces)[i];
       if (surface.patch != kNone) return;
-      if (std::abs(plane.DistanceM(cells[i].mean_m)) > options.band_m) return;
+      if (std::abs(plane.DistanceM(grid.MeanM(i))) > options.band_m) return;
       if (surface.is_planar &&
           std::abs(surface.plane.normal.dot(plane.normal)) < kMinNormalCosine) {
         return;
@@ -104,8 +102,8 @@ PlanarPatch Describe(const std::vector<std::size_t>& members, const VoxelGrid& g
   PlanarPatch patch;
   PointMoments moments;
   for (const std::size_t i : members) {
-    moments.Add(grid.Cells()[i].moments);
-    patch.middle_m += grid.Cells()[i].mean_m / static_cast<double>(members.size());
+    moments.Add(grid.Moments(i));
+    patch.middle_m += grid.MeanM(i) / static_cast<double>(members.size());
   }
   patch.plane = FitPlane(moments);
   patch.num_points = static_cast<int>(moments.num);
@@ -126,7 +124,7 @@ bool HasBoardSize(const PlanarPatch& patch,
   if (patch.num_points < options.min_points) return false;
   if (Unlikeness(patch, options) > std::log(2.0)) return false;
   return std::all_of(members.begin(), members.end(), [&](std::size_t i) {
-    return (grid.Cells()[i].mean_m - patch.middle_m).norm() <= options.max_radius_m;
+    return (grid.MeanM(i) - patch.middle_m).norm() <= options.max_radius_m;
   });
 }
 

@@ -1,5 +1,7 @@
 #include "core/board/plane_fit.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 
@@ -35,15 +37,22 @@ PlaneFit FitPlane(const PointMoments& moments) {
 PlaneFit FitPlaneRobustly(const std::vector<Eigen::Vector3d>& points_m,
                           const PlaneFit& start,
                           double scale_m) {
-  constexpr int kNumIterations = 10;  // converges to micrometres in 5 to 8 on real boards
+  constexpr int kMaxIterations = 10;  // converges to micrometres in 5 to 8 on real boards
+  constexpr double kSmallTurn = 1e-6;
+  constexpr double kSmallShiftM = 1e-6;
   PlaneFit plane = start;
-  for (int iteration = 0; iteration < kNumIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     PointMoments moments;
     for (const Eigen::Vector3d& point_m : points_m) {
       const double r = plane.DistanceM(point_m) / scale_m;
       moments.Add(point_m, 1.0 / (1.0 + r * r));
     }
+    const PlaneFit before = plane;
     plane = FitPlane(moments);
+    if ((plane.normal - before.normal).norm() < kSmallTurn &&
+        std::abs(before.DistanceM(plane.point_m)) < kSmallShiftM) {
+      break;
+    }
   }
   return plane;
 }
@@ -55,8 +64,14 @@ Eigen::Matrix3d PlaneCovariance(const std::vector<Eigen::Vector3d>& points_m,
                                 const Eigen::Vector3d& e1,
                                 const Eigen::Vector3d& e2) {
   // A point's distance changes by J * [tilt1; tilt2; offset], J = -[y, -x, 1] in the plane's axes.
+  constexpr double kNumParameters = 3.0;
+  struct Line {
+    double num = 0.0;
+    double sum_m = 0.0;  // of distances
+    Eigen::Vector3d J = Eigen::Vector3d::Zero();
+  };
+  std::map<std::uint16_t, Line> lines;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  std::map<std::uint16_t, Eigen::Vector3d> score_of_ring;
   double sum_squares_m2 = 0.0;
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     const Eigen::Vector3d offset_m = points_m[i] - centre_m;
@@ -64,15 +79,30 @@ Eigen::Matrix3d PlaneCovariance(const std::vector<Eigen::Vector3d>& points_m,
     const double r_m = plane.DistanceM(points_m[i]);
     information += J * J.transpose();
     sum_squares_m2 += r_m * r_m;
-    if (!rings.empty()) {
-      score_of_ring.try_emplace(rings[i], Eigen::Vector3d::Zero()).first->second += r_m * J;
-    }
+    if (rings.empty()) continue;
+    Line& line = lines[rings[i]];
+    line.num += 1;
+    line.sum_m += r_m;
+    line.J += J;
   }
-  const double variance_m2 = sum_squares_m2 / static_cast<double>(points_m.size());
+  const auto num = static_cast<double>(points_m.size());
+  const auto num_lines = static_cast<double>(lines.size());
+  double within_m2 = sum_squares_m2;
+  for (const auto& [ring, line] : lines) within_m2 -= line.sum_m * line.sum_m / line.num;
+  // Without lines, the plane alone takes the degrees of freedom.
+  within_m2 /= std::max(num - std::max(num_lines, kNumParameters), 1.0);
+  double between_m2 = 0.0;
+  Eigen::Matrix3d line_spread = Eigen::Matrix3d::Zero();
+  for (const auto& [ring, line] : lines) {
+    const double mean_m = line.sum_m / line.num;
+    between_m2 += mean_m * mean_m;
+    line_spread += line.J * line.J.transpose();
+  }
+  // The plane takes three of the lines' means; noise moves each of the others by within / num.
+  between_m2 /= std::max(num_lines - kNumParameters, 1.0);
+  for (const auto& [ring, line] : lines) between_m2 -= within_m2 / (line.num * num_lines);
   const Eigen::Matrix3d inverse = information.inverse();
-  Eigen::Matrix3d spread = variance_m2 * information;
-  for (const auto& [ring, score] : score_of_ring) spread += score * score.transpose();
-  return inverse * spread * inverse;
+  return inverse * (within_m2 * information + std::max(between_m2, 0.0) * line_spread) * inverse;
 }
 
 }  // namespace voqcal

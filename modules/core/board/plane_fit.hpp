@@ -54,9 +54,10 @@ PlaneFit FitPlaneRobustly(const std::vector<Eigen::Vector3d>& points_m,
 /// Covariance of a plane: tilts about the orthonormal in-plane axes e1 and e2 (rad, right-handed
 /// with e1 x e2 = normal), then the offset along the normal (m) at `centre_m`.
 ///
-/// Points of one scan line err together (each laser has its own offset), so their errors are summed
-/// by line before they are squared: the cluster-robust ("sandwich") covariance of Liang and Zeger
-/// 1986, Biometrika 73(1), on top of the independent noise.
+/// Two kinds of error, each with one variance estimated from the residuals: independent noise of
+/// each point, and an offset that the points of one scan line share (each laser has its own), as
+/// in an analysis of variance between and within lines. Both are of this one sweep: what shifts
+/// all lines alike (a range offset of the lidar) leaves no residual and is not covered.
 ///
 /// @param rings  Scan line of each point, or empty: then only independent noise counts.
 Eigen::Matrix3d PlaneCovariance(const std::vector<Eigen::Vector3d>& points_m,

@@ -1,7 +1,6 @@
 #include "core/board/voxel_grid.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace voqcal {
@@ -9,12 +8,12 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 constexpr int kBits = 21;  // for each axis: +-1 million cells, beyond any range over any cell
-constexpr std::int64_t kOffset = std::int64_t{1} << (kBits - 1);
+constexpr double kOffset = 1 << (kBits - 1);
 constexpr std::uint64_t kAxisMask = (std::uint64_t{1} << kBits) - 1;
 
 std::uint64_t PackedAxis(double cell) {
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(cell)) + kOffset) &
-         kAxisMask;
+  // Positive once the offset is added, so that the conversion rounds down.
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(cell + kOffset)) & kAxisMask;
 }
 
 /// Orders like (x, y, z).
@@ -39,9 +38,6 @@ class KeyTable {
     keys_.push_back(key);
     return slots_[i].second;
   }
-
-  /// kNone if `key` is unknown.
-  std::uint32_t Find(std::uint64_t key) const { return slots_[SlotOf(key)].second; }
 
   const std::vector<std::uint64_t>& Keys() const { return keys_; }
 
@@ -80,31 +76,35 @@ VoxelGrid::VoxelGrid(const std::vector<Eigen::Vector3d>& points_m, double voxel_
   for (std::uint32_t i = 0; i < moments.size(); ++i) order.emplace_back(table.Keys()[i], i);
   std::sort(order.begin(), order.end());
 
-  cells_.reserve(order.size());
+  places_.reserve(order.size());
+  moments_.reserve(order.size());
+  means_m_.reserve(order.size());
   std::vector<std::uint64_t> column_keys;
   for (const auto& [key, i] : order) {
     if (column_keys.empty() || column_keys.back() != key >> kBits) {
       column_keys.push_back(key >> kBits);
-      columns_.emplace_back().begin = cells_.size();
+      columns_.emplace_back().begin = places_.size();
     }
     const auto column = static_cast<std::uint32_t>(columns_.size() - 1);
-    cells_.push_back(
-        {static_cast<std::int64_t>(key & kAxisMask), column, moments[i], moments[i].MeanM()});
-    columns_.back().end = cells_.size();
+    places_.push_back({column, static_cast<std::int32_t>(key & kAxisMask)});
+    moments_.push_back(moments[i]);
+    means_m_.push_back(moments[i].MeanM());
+    columns_.back().end = places_.size();
   }
   LinkColumns(column_keys);
 }
 
 void VoxelGrid::LinkColumns(const std::vector<std::uint64_t>& keys) {
-  KeyTable table;
-  for (const std::uint64_t key : keys) table.NumberOf(key);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    for (int dx = -kReach; dx <= kReach; ++dx) {
-      for (int dy = -kReach; dy <= kReach; ++dy) {
-        const std::int64_t step = dx * (std::int64_t{1} << kBits) + dy;
-        const std::uint32_t near = table.Find(keys[i] + static_cast<std::uint64_t>(step));
-        columns_[i].near[NearSlot(dx, dy)] =
-            near == kNone ? kNoColumn : static_cast<std::int32_t>(near);
+  // Keys grow, so for each dx the first column that can be near moves on only.
+  for (int dx = -kReach; dx <= kReach; ++dx) {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const std::int64_t row = static_cast<std::int64_t>(keys[i]) + dx * (std::int64_t{1} << kBits);
+      const auto dy_of = [&](std::size_t j) { return static_cast<std::int64_t>(keys[j]) - row; };
+      while (first < keys.size() && dy_of(first) < -kReach) ++first;
+      for (int dy = -kReach; dy <= kReach; ++dy) columns_[i].near[NearSlot(dx, dy)] = kNoColumn;
+      for (std::size_t j = first; j < keys.size() && dy_of(j) <= kReach; ++j) {
+        columns_[i].near[NearSlot(dx, static_cast<int>(dy_of(j)))] = static_cast<std::int32_t>(j);
       }
     }
   }

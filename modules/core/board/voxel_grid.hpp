@@ -17,29 +17,24 @@ namespace voqcal {
 /// columns around it: a neighbourhood is 9 or 25 short runs of cells.
 class VoxelGrid {
  public:
-  struct Cell {
-    std::int64_t z = 0;  ///< Height in the column, in cells.
-    std::uint32_t column = 0;
-    PointMoments moments;
-    Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
-  };
-
   VoxelGrid(const std::vector<Eigen::Vector3d>& points_m, double voxel_m);
 
-  const std::vector<Cell>& Cells() const { return cells_; }
+  std::size_t NumCells() const { return places_.size(); }
+  const PointMoments& Moments(std::size_t cell) const { return moments_[cell]; }
+  const Eigen::Vector3d& MeanM(std::size_t cell) const { return means_m_[cell]; }
 
   /// Calls `visit(i)` for each cell within `reach` (at most 2) steps of cell `at`, itself included.
   template <typename Visit>
   void ForEachNear(std::size_t at, int reach, Visit visit) const {
-    const Cell& cell = cells_[at];
+    const Place place = places_[at];
     for (int dx = -reach; dx <= reach; ++dx) {
       for (int dy = -reach; dy <= reach; ++dy) {
-        const std::int32_t near = columns_[cell.column].near[NearSlot(dx, dy)];
+        const std::int32_t near = columns_[place.column].near[NearSlot(dx, dy)];
         if (near == kNoColumn) continue;
         const Column& column = columns_[static_cast<std::size_t>(near)];
         for (std::size_t i = column.begin; i < column.end; ++i) {
-          if (cells_[i].z > cell.z + reach) break;
-          if (cells_[i].z >= cell.z - reach) visit(i);
+          if (places_[i].z > place.z + reach) break;
+          if (places_[i].z >= place.z - reach) visit(i);
         }
       }
     }
@@ -49,8 +44,12 @@ class VoxelGrid {
   static constexpr int kReach = 2;
   static constexpr std::int32_t kNoColumn = -1;
 
+  struct Place {
+    std::uint32_t column = 0;
+    std::int32_t z = 0;  // height in the column, in cells
+  };
   struct Column {
-    std::size_t begin = 0;  // of cells_
+    std::size_t begin = 0;  // of its cells
     std::size_t end = 0;
     std::array<std::int32_t, (2 * kReach + 1) * (2 * kReach + 1)> near{};
   };
@@ -61,7 +60,10 @@ class VoxelGrid {
 
   void LinkColumns(const std::vector<std::uint64_t>& keys);
 
-  std::vector<Cell> cells_;
+  // Of each cell, by what is used together.
+  std::vector<Place> places_;
+  std::vector<PointMoments> moments_;
+  std::vector<Eigen::Vector3d> means_m_;
   std::vector<Column> columns_;
 };
 

@@ -30,7 +30,7 @@ std::vector<OutlineBeam> Grid(const OutlineModel& model,
     for (int j = -80; j <= 80; ++j) {
       OutlineBeam beam;
       beam.position_m = kSpacingM * Eigen::Vector2d(i, j);
-      const Eigen::Vector2d q_m = pose.ToRectangle(beam.position_m);
+      const Eigen::Vector2d q_m = pose.T_rectangle_plane() * beam.position_m;
       beam.is_hit = std::abs(q_m.x()) < model.width_m / 2 + spill_m &&
                     std::abs(q_m.y()) < model.height_m / 2 + spill_m;
       beams.push_back(beam);

@@ -27,9 +27,10 @@ struct SyntheticLidarBoardOptions {
   Eigen::Isometry3d T_lidar_board = Eigen::Isometry3d::Identity();
   bool has_board = true;
   double thickness_m = 0.0;
-  double spill_m = 0.005;  ///< Beams this far past an edge still return from the board.
-  bool has_wall = true;    ///< At x = 7 m; without it these beams return nothing.
-  bool has_floor = true;   ///< At z = -1.3 m.
+  double spill_m = 0.005;    ///< Beams this far past an edge still return from the board.
+  double edge_blur_m = 0.0;  ///< Scale of a logistic scatter of the spill from beam to beam.
+  bool has_wall = true;      ///< At x = 7 m; without it these beams return nothing.
+  bool has_floor = true;     ///< At z = -1.3 m.
   std::vector<SyntheticBox> boxes;
   double noise_m = 0.0;   ///< 1 sigma of each range.
   int num_rings = 16;     ///< From -15 to 15 degrees.
@@ -104,6 +105,12 @@ inline PointCloud SynthesizeLidarBoard(const SyntheticLidarBoardOptions& options
                                 std::cos(elevation) * std::sin(azimuth),
                                 std::sin(elevation));
       double range_m = std::numeric_limits<double>::infinity();
+      if (options.has_board && options.edge_blur_m > 0) {
+        const double u = (static_cast<double>(random()) + 0.5) / 4294967296.0;
+        const double spill_m = options.spill_m + options.edge_blur_m * std::log(u / (1.0 - u));
+        boxes.back().half_m.x() = options.board.width_m / 2 + spill_m;
+        boxes.back().half_m.y() = options.board.height_m / 2 + spill_m;
+      }
       for (const SyntheticBox& box : boxes) range_m = std::min(range_m, RangeToBox(box, ray));
       if (options.has_wall && ray.x() > 0.05) range_m = std::min(range_m, 7.0 / ray.x());
       if (options.has_floor && ray.z() < 0) range_m = std::min(range_m, -1.3 / ray.z());

@@ -10,27 +10,14 @@
 
 #include "core/board/lidar_board.hpp"
 #include "support/real_data.hpp"
+#include "support/real_sweeps.hpp"
 
 namespace voqcal {
 namespace {
 
-const BoardSpec kBoard{0.61, 0.85, 0.095, 5, 7, 0.002, 0.0};
+using test::LoadPcd;
 
-/// An ascii PCD with the fields x y z intensity ring.
-PointCloud LoadPcd(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  PointCloud cloud;
-  cloud.has_intensity = cloud.has_ring = true;
-  std::string line;
-  while (std::getline(file, line) && line.rfind("DATA", 0) != 0) {
-  }
-  LidarPoint point;
-  while (file >> point.position_m.x() >> point.position_m.y() >> point.position_m.z() >>
-         point.intensity >> point.ring) {
-    cloud.points.push_back(point);
-  }
-  return cloud;
-}
+const BoardSpec& kBoard = test::kAcfrBoard;
 
 struct TableRow {
   Eigen::Vector3d camera_centre_m;

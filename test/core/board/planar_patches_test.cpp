@@ -1,0 +1,99 @@
+#include "core/board/planar_patches.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/board/lidar_beams.hpp"
+#include "core/board/lidar_board.hpp"
+
+namespace voqcal {
+namespace {
+
+double Uniform(std::mt19937* random, double low, double high) {
+  return low + (high - low) * static_cast<double>((*random)()) / 4294967296.0;
+}
+
+PointCloud UniformNoise(int num_points) {
+  std::mt19937 random(4);
+  PointCloud cloud;
+  for (int i = 0; i < num_points; ++i) {
+    cloud.points.emplace_back().position_m =
+        Eigen::Vector3d(
+            Uniform(&random, -10, 10), Uniform(&random, -10, 10), Uniform(&random, -3, 3))
+            .cast<float>();
+  }
+  return cloud;
+}
+
+TEST(FitPlane, IsExactOnAPlane) {
+  PointMoments moments;
+  const Eigen::Vector3d normal = Eigen::Vector3d(-2, 1, 2) / 3;
+  for (const double a : {-1.0, 0.0, 1.0}) {
+    for (const double b : {-0.5, 0.5}) {
+      moments.Add(-3 * normal + a * Eigen::Vector3d(1, 2, 0) / std::sqrt(5) +
+                  b * normal.cross(Eigen::Vector3d(1, 2, 0)) / std::sqrt(5));
+    }
+  }
+  const PlaneFit plane = FitPlane(moments);
+  // Of six points: sigma 0.5 along b, sqrt(2/3) along a. The normal looks to the origin.
+  EXPECT_NEAR(plane.normal.dot(normal), 1.0, 1e-9);
+  EXPECT_NEAR(plane.spread_m[0], 0.0, 1e-6);
+  EXPECT_NEAR(plane.spread_m[1], 0.5, 1e-9);
+  EXPECT_NEAR(plane.spread_m[2], std::sqrt(2.0 / 3.0), 1e-9);
+}
+
+TEST(FindPlanarPatches, FindsARectangleAndNeitherWallNorBush) {
+  std::mt19937 random(5);
+  std::vector<Eigen::Vector3d> points_m;
+  for (int i = 0; i < 800; ++i) {
+    points_m.emplace_back(2.0, Uniform(&random, -0.3, 0.3), Uniform(&random, -0.42, 0.42));
+  }
+  for (int i = 0; i < 8000; ++i) {
+    points_m.emplace_back(5.0, Uniform(&random, -4, 4), Uniform(&random, -1, 2));
+    points_m.emplace_back(
+        Uniform(&random, 2.5, 3.3), Uniform(&random, 2.6, 3.4), Uniform(&random, -0.4, 0.4));
+  }
+  const auto patches = FindPlanarPatches(points_m, {});
+  ASSERT_EQ(patches.size(), 1U);
+  EXPECT_EQ(patches.front().num_points, 800);
+  // The rectangle's mean, to the spread of its cells' means.
+  EXPECT_LT((patches.front().middle_m - Eigen::Vector3d(2, 0, 0)).norm(), 0.03);
+}
+
+TEST(BeamIndex, FindsWhatAScanOfAllBeamsFinds) {
+  const std::vector<LidarBeam> beams = ValidBeams(UniformNoise(5000), 0.5);
+  const BeamIndex index(beams);
+  std::mt19937 random(6);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Eigen::Vector3d axis =
+        Eigen::Vector3d(Uniform(&random, -1, 1), Uniform(&random, -1, 1), Uniform(&random, -2, 2))
+            .normalized();
+    const double half_angle_rad = Uniform(&random, 0.05, 1.7);
+    std::vector<LidarBeam> cone;
+    index.AppendCone(axis, half_angle_rad, &cone);
+    std::size_t num = 0;
+    for (const LidarBeam& beam : beams) num += axis.dot(beam.direction) > std::cos(half_angle_rad);
+    EXPECT_EQ(cone.size(), num) << axis.transpose() << ' ' << half_angle_rad;
+  }
+}
+
+TEST(IsInShare, TakesEvenlyWhateverThePeriod) {
+  for (const std::size_t period : {1U, 2U, 16U, 64U, 128U}) {
+    int num = 0;
+    for (std::size_t i = 0; i < 128000; i += period) num += IsInShare(i, 12800, 128000);
+    // A tenth of each period's points; Weyl sequences stay within a few counts.
+    EXPECT_NEAR(num, 12800.0 / static_cast<double>(period), 10.0) << period;
+  }
+}
+
+TEST(DetectLidarBoard, NoiseHasNoBoard) {
+  const BoardSpec board{0.61, 0.85, 0.095, 5, 7, 0.0, 0.0};
+  for (const int num_points : {1000, 300000}) {
+    EXPECT_FALSE(DetectLidarBoard(UniformNoise(num_points), board, {})) << num_points;
+  }
+}
+
+}  // namespace
+}  // namespace voqcal

@@ -129,7 +129,8 @@ std::vector<std::uint16_t> RingsOf(const Measurement& m, const PointCloud& cloud
 
 /// Of [rotation_rad; translation_m], left side. The outline gives the shift in the plane and the
 /// turn about the normal; the plane gives the tilts, and an offset that moves the centre along its
-/// ray, because the outline was seen along rays.
+/// ray, because the outline was seen along rays. Covers noise, offsets of single scan lines, and
+/// the unknown spill and thickness; not what all lines share, nor a board that is bent.
 Matrix6d CovarianceOf(const Eigen::Isometry3d& T_lidar_board,
                       const Measurement& m,
                       const PointCloud& cloud_lidar_m) {

@@ -73,6 +73,21 @@ TEST(DetectLidarBoard, FindsBoardAtManyPoses) {
   }
 }
 
+TEST(DetectLidarBoard, FindsBoardInDenseSweeps) {
+  SyntheticLidarBoardOptions scene;
+  scene.noise_m = 0.01;
+  for (const int num_rings : {64, 128}) {
+    for (const double x_m : {1.5, 3.0, 6.0}) {
+      SCOPED_TRACE(testing::Message() << num_rings << ' ' << x_m);
+      scene.num_rings = num_rings;
+      scene.T_lidar_board = FacingBoard({x_m, 0.1 * x_m, -0.1}, 40.0, 20.0, 10.0);
+      // At 6 m beams are 21 mm apart along a ring, and a board has 20 rings at least: 21 / sqrt(12
+      // * 20) = 1.4 mm; the plane of 200 points tilts by 10 mm / (180 mm * sqrt(200)) = 4 mrad.
+      ExpectFound(SynthesizeLidarBoard(scene), scene, 2 * kSpacingTolM, 2 * kSpacingTolRad);
+    }
+  }
+}
+
 TEST(DetectLidarBoard, ErrorStaysWithinItsCovariance) {
   SyntheticLidarBoardOptions scene = Diamond();
   for (const double noise_m : {0.005, 0.015}) {

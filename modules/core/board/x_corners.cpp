@@ -79,13 +79,16 @@ void SaddleRow(const cv::Mat& smooth, int y, std::vector<float>* saddle) {
 
 // Where the smoothed surface is level near pixel (x, y): the corner, if it is one.
 std::optional<cv::Point2f> SaddlePoint(const cv::Mat& smooth, int x, int y) {
-  constexpr float kMaxShiftPx = 1.0F;  // farther away another pixel is the maximum
+  // Newton's step is too long where the image is sharp: 1 px for an upright corner between pixels.
+  constexpr float kMaxStepPx = 1.5F;
+  constexpr float kMaxShiftPx = 0.5F;  // farther away another pixel is the maximum
   const Derivatives d = DerivativesAt(smooth, x, y);
   const float det = d.xx * d.yy - d.xy * d.xy;
   const float dx = -(d.yy * d.x - d.xy * d.y) / det;
   const float dy = -(d.xx * d.y - d.xy * d.x) / det;
-  if (!(std::abs(dx) <= kMaxShiftPx && std::abs(dy) <= kMaxShiftPx)) return {};
-  return cv::Point2f(static_cast<float>(x) + dx, static_cast<float>(y) + dy);
+  if (!(std::abs(dx) <= kMaxStepPx && std::abs(dy) <= kMaxStepPx)) return {};
+  return cv::Point2f(static_cast<float>(x) + std::clamp(dx, -kMaxShiftPx, kMaxShiftPx),
+                     static_cast<float>(y) + std::clamp(dy, -kMaxShiftPx, kMaxShiftPx));
 }
 
 // Mean difference of opposite pixels of the circle.
@@ -129,48 +132,72 @@ std::optional<cv::Point2f> LineThrough(const cv::Point2f& a, const cv::Point2f& 
   return difference / std::hypot(difference.x, difference.y);
 }
 
-std::optional<XCorner> XCornerAt(const cv::Mat& smooth, int x, int y) {
-  std::array<float, kNumRing> ring;
-  float darkest = HUGE_VALF;
-  float brightest = -HUGE_VALF;
+using Ring = std::array<float, kNumRing>;
+
+Ring RingAround(const cv::Mat& smooth, int x, int y) {
+  Ring ring;
   for (int k = 0; k < kNumRing; ++k) {
     ring[k] = static_cast<float>(smooth.ptr<short>(y + kRing[k][1])[x + kRing[k][0]]);
-    darkest = std::min(darkest, ring[k]);
-    brightest = std::max(brightest, ring[k]);
   }
-  XCorner corner;
-  corner.contrast = (brightest - darkest) / kScale;
-  if (corner.contrast < kMinContrast) return {};
-  if (Asymmetry(ring) > kMaxAsymmetry * (brightest - darkest)) return {};
-  const auto changes = ShadeChanges(ring, (brightest + darkest) / 2);
+  return ring;
+}
+
+// The same around any point, interpolated.
+Ring RingAround(const cv::Mat& smooth, const cv::Point2f& centre) {
+  const int x = cvFloor(centre.x);
+  const int y = cvFloor(centre.y);
+  const float right = centre.x - static_cast<float>(x);
+  const float down = centre.y - static_cast<float>(y);
+  Ring ring;
+  for (int k = 0; k < kNumRing; ++k) {
+    const short* above = smooth.ptr<short>(y + kRing[k][1]) + x + kRing[k][0];
+    const short* below = smooth.ptr<short>(y + 1 + kRing[k][1]) + x + kRing[k][0];
+    ring[k] = (1 - down) * ((1 - right) * above[0] + right * above[1]) +
+              down * ((1 - right) * below[0] + right * below[1]);
+  }
+  return ring;
+}
+
+std::optional<XCorner> XCornerAt(const cv::Mat& smooth, int x, int y) {
+  // Around the pixel first, as most pixels end here: an upright corner half a pixel off lends its
+  // opposite pixels a difference of 0.25 by that alone.
+  constexpr float kMaxAsymmetryOfPixel = 0.4F;
+  const Ring around_pixel = RingAround(smooth, x, y);
+  const auto [low, high] = std::minmax_element(around_pixel.begin(), around_pixel.end());
+  if (*high - *low < kMinContrast * kScale) return {};
+  if (Asymmetry(around_pixel) > kMaxAsymmetryOfPixel * (*high - *low)) return {};
+  const auto position = SaddlePoint(smooth, x, y);
+  if (!position) return {};
+
+  const Ring ring = RingAround(smooth, *position);
+  const auto [darkest, brightest] = std::minmax_element(ring.begin(), ring.end());
+  if (Asymmetry(ring) > kMaxAsymmetry * (*brightest - *darkest)) return {};
+  const auto changes = ShadeChanges(ring, (*brightest + *darkest) / 2);
   if (!changes) return {};
   const auto rising = LineThrough((*changes)[0], (*changes)[2]);
   const auto falling = LineThrough((*changes)[1], (*changes)[3]);
   if (!rising || !falling) return {};
   constexpr float kMinSine = 0.25F;  // 15 degrees: a board seen at 80 degrees, corner on
   if (rising->cross(*falling) < kMinSine) return {};
-  corner.axes = {*rising, *falling};
-  const auto position = SaddlePoint(smooth, x, y);
-  if (!position) return {};
-  corner.position_px = *position;
-  return corner;
+  return XCorner{*position, {*rising, *falling}, (*brightest - *darkest) / kScale};
 }
 
 }  // namespace
 
 std::vector<XCorner> FindXCorners(const cv::Mat& grey, std::size_t max_corners) {
-  if (std::min(grey.cols, grey.rows) <= 2 * kRadiusPx) return {};
+  constexpr int kBorderPx = kRadiusPx + 2;  // a saddle may be off the pixel, and is interpolated
+  if (std::min(grey.cols, grey.rows) <= 2 * kBorderPx) return {};
   const cv::Mat smooth = Smoothed(grey);
   const float min_saddle = kMinSaddle * kMinSaddle * kScale * kScale;
   std::vector<XCorner> corners;
   std::vector<float> above(grey.cols), here(grey.cols), below(grey.cols);
-  SaddleRow(smooth, kRadiusPx - 1, &here);
-  SaddleRow(smooth, kRadiusPx, &below);
-  for (int y = kRadiusPx; y < grey.rows - kRadiusPx; ++y) {
+  SaddleRow(smooth, kBorderPx - 1, &here);
+  SaddleRow(smooth, kBorderPx, &below);
+  for (int y = kBorderPx; y < grey.rows - kBorderPx; ++y) {
     std::swap(above, here);
     std::swap(here, below);
     SaddleRow(smooth, y + 1, &below);
-    for (int x = kRadiusPx; x < grey.cols - kRadiusPx; ++x) {
+    for (int x = kBorderPx; x < grey.cols - kBorderPx; ++x) {
       const float s = here[x];
       if (s < min_saddle || s <= here[x - 1] || s < here[x + 1]) continue;
       if (s <= *std::max_element(&above[x - 1], &above[x + 2])) continue;

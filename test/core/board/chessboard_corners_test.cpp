@@ -68,6 +68,15 @@ TEST(FindChessboardCorners, FindsCornersNearAndFarThroughBlurAndNoise) {
   }
 }
 
+TEST(FindChessboardCorners, FindsSharpUprightBoardsWhereverCornersFallBetweenPixels) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = ExpSO3({M_PI, 0, 0});
+  T.translation() << 0.1, 0.05, 1.89;  // corners at every fraction of a pixel, by the lens
+  const auto found = FindChessboardCorners(test::RenderBoard(kCamera, kBoard, T), kBoard);
+  ASSERT_TRUE(found);
+  EXPECT_LT(WorstErrorPx(*found, kBoard, T), kCleanPx);
+}
+
 TEST(FindChessboardCorners, SurvivesBlurOfAFourthOfASquare) {
   const Eigen::Isometry3d T = BoardAhead(0.7);
   cv::Mat blurred;  // squares of 22 to 27 px

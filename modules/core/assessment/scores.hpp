@@ -17,7 +17,8 @@ namespace voqcal {
 struct PoseScore {
   double centre_px =
       std::numeric_limits<double>::quiet_NaN();  ///< Reprojection error of the board's centre.
-  /// The same times the board's metres per pixel, as the paper defines it.
+  /// The same times the board's metres per pixel (MetresPerPixel): the paper's millimetres, whose
+  /// scale it does not spell out.
   double centre_mm = std::numeric_limits<double>::quiet_NaN();
   /// Mean distance of the 4 outline corners in the camera frame, matched up to the board's
   /// half-turn.
@@ -46,8 +47,10 @@ SceneScore ScoreScene(const std::vector<const BoardSample*>& samples,
                       const CameraModel& camera,
                       const Eigen::Isometry3d& T_camera_lidar);
 
-/// Each pose scored by the extrinsic refined without it, from the same start. A pose without which
-/// the refinement is not usable scores NaN: at least four samples are needed.
+/// Each pose scored by the extrinsic refined without it, from the same start: what is held out is
+/// the refinement. The start (the average over all poses) only says which minimum and which
+/// half-turns are meant. A pose without which the refinement is not usable scores NaN: at least
+/// four samples are needed.
 SceneScore LeaveOneOutScore(const std::vector<const BoardSample*>& samples,
                             const CameraModel& camera,
                             const Eigen::Isometry3d& T_camera_lidar_start,

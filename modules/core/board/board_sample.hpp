@@ -14,12 +14,16 @@
 
 namespace voqcal {
 
+/// NaN: a vector that nobody has set is never a plausible one.
+inline const Eigen::Vector3d kUnknown =
+    Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+
 /// Where one sensor saw the board, in that sensor's frame.
 struct BoardPose {
-  Eigen::Vector3d centre_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  ///< Unit length, towards the sensor: board z.
-  std::array<Eigen::Vector3d, 4> corners_m{};  ///< Of the outline, in BoardSpec's order.
+  Eigen::Vector3d centre_m = kUnknown;
+  Eigen::Vector3d normal = kUnknown;  ///< Unit length, towards the sensor: board z.
+  /// Of the outline, in BoardSpec's order.
+  std::array<Eigen::Vector3d, 4> corners_m = {kUnknown, kUnknown, kUnknown, kUnknown};
   /// Of [rotation_rad; translation_m] of T_sensor_board, perturbed on the left (sensor) side at the
   /// board's centre. Zero if unknown (features that were read from a table).
   Matrix6d covariance = Matrix6d::Zero();

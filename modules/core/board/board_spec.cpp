@@ -1,5 +1,7 @@
 #include "core/board/board_spec.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace voqcal {
@@ -25,6 +27,10 @@ std::vector<std::string> BoardSpec::Problems() const {
   require(num_corners_x >= 3, "num_corners_x must be at least 3", num_corners_x);
   require(num_corners_y >= 3, "num_corners_y must be at least 3", num_corners_y);
   if (!problems.empty()) return problems;
+  // Both detectors tell half-turns apart at most: a square's quarter-turns would go unnoticed.
+  require(std::abs(width_m - height_m) >= 0.05 * std::max(width_m, height_m),
+          "width_m and height_m must differ by at least 5 %: width_m",
+          width_m);
   // The pattern has one square more than inner corners on each axis; a partial square may be
   // missing.
   require((num_corners_x - 1) * square_m < width_m,

@@ -13,12 +13,15 @@ namespace voqcal {
 /// Board frame: origin at the centre of the rectangle, x along the width, y along the height, z out
 /// of the printed face, towards the sensors. Seen from the front with y up, x points right.
 struct BoardSpec {
-  double width_m = 0.0;             ///< Edge along board x.
-  double height_m = 0.0;            ///< Edge along board y.
-  double square_m = 0.0;            ///< Side of one chessboard square.
-  int num_corners_x = 0;            ///< Inner corners along board x.
-  int num_corners_y = 0;            ///< Inner corners along board y.
-  double pattern_offset_x_m = 0.0;  ///< Centre of the pattern in the board frame.
+  double width_m = 0.0;   ///< Edge along board x.
+  double height_m = 0.0;  ///< Edge along board y.
+  double square_m = 0.0;  ///< Side of one chessboard square.
+  int num_corners_x = 0;  ///< Inner corners along board x.
+  int num_corners_y = 0;  ///< Inner corners along board y.
+  /// Centre of the pattern in the board frame, for a board held with y up: where num_corners_x +
+  /// num_corners_y is even, nothing in the image tells which way up it is, so that an inverted
+  /// board's centre is off by twice this.
+  double pattern_offset_x_m = 0.0;
   double pattern_offset_y_m = 0.0;
 
   /// One line for each broken constraint, with its value; empty if the board is usable.

@@ -53,20 +53,22 @@ bool IsTurned(const BoardPose& pose, const BoardPose& reference) {
   return x.dot(x_reference) < 0;
 }
 
-// Mean of poses that differ by noise; the covariance of a mean of independent measurements.
+// Mean of poses that differ by noise. The covariance stays that of one frame: what it covers beside
+// noise (ring offsets, the outline's model, the lens) is the same in every frame of a resting
+// board, and averaging does not lessen it.
 BoardPose MeanPose(const std::vector<BoardPose>& poses, const BoardSpec& board) {
   std::vector<Eigen::Matrix3d> rotations;
   Eigen::Isometry3d T_sensor_board = Eigen::Isometry3d::Identity();
-  Matrix6d covariance_sum = Matrix6d::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
   const double n = static_cast<double>(poses.size());
   for (const BoardPose& pose : poses) {
     rotations.push_back(TransformFromPose(pose).linear());
     T_sensor_board.translation() += pose.centre_m / n;
-    covariance_sum += pose.covariance;
+    covariance += pose.covariance / n;
   }
   T_sensor_board.linear() = MeanRotation(rotations);
   BoardPose mean = PoseFromTransform(T_sensor_board, board);
-  mean.covariance = covariance_sum / (n * n);
+  mean.covariance = covariance;
   return mean;
 }
 
@@ -193,9 +195,10 @@ std::vector<PickerDecision> SamplePicker::Judge(bool is_flushing) {
       decisions.push_back({lidar.utime, {}, "no camera frame at that time"});
       continue;
     }
-    const CameraSighting camera = camera_[static_cast<std::size_t>(partner)];
     // Camera frames before the partner can have no lidar frame any more.
-    camera_.erase(camera_.begin(), camera_.begin() + partner + 1);
+    for (int i = 0; i < partner; ++i) decisions.push_back(DropCameraFrame());
+    const CameraSighting camera = camera_.front();
+    camera_.pop_front();
     decisions.push_back(JudgePair({lidar, camera}));
   }
   // What no lidar frame can claim: those that are waiting, or still to come, are too late for it.
@@ -204,9 +207,15 @@ std::vector<PickerDecision> SamplePicker::Judge(bool is_flushing) {
         lidar_.empty() ? newest_lidar_utime_ : lidar_.front().utime;
     const bool is_unclaimed = camera_.front().utime + max_pair_offset_us_ < next_lidar_utime;
     if (!is_unclaimed && !is_flushing && camera_.size() <= kMaxWaiting) break;
-    camera_.pop_front();
+    decisions.push_back(DropCameraFrame());
   }
   return decisions;
+}
+
+PickerDecision SamplePicker::DropCameraFrame() {
+  const std::int64_t utime = camera_.front().utime;
+  camera_.pop_front();
+  return {utime, {}, "no lidar frame at that time"};
 }
 
 PickerDecision SamplePicker::JudgePair(const Pair& pair) {

@@ -39,8 +39,7 @@ using CameraSighting = Sighting<CameraBoard>;
 
 /// One decision: a sample, or why a pair of frames gave none.
 struct PickerDecision {
-  std::int64_t utime =
-      0;  ///< Of the lidar frame; of the camera frame where there is no lidar frame.
+  std::int64_t utime = 0;  ///< Of the lidar frame, or of the camera frame that has none.
   std::optional<BoardSample> accepted;  ///< Its id is 0: numbering is the caller's.
   std::string reason;                   ///< Empty if accepted.
 };
@@ -48,7 +47,9 @@ struct PickerDecision {
 /// Pairs the two detectors' streams by sensor time and picks the samples.
 ///
 /// The answer depends on the sightings' times only, not on the order in which the two streams
-/// arrive: a sighting is judged once both streams have passed its time, or at Flush.
+/// arrive: a sighting is judged once both streams have passed its time, or at Flush. Two
+/// exceptions: a stream whose partner lags by more than 600 frames is judged without it, and
+/// RequestCapture takes the next pair that is judged after the request.
 class SamplePicker {
  public:
   /// @throws std::invalid_argument if `options` have Problems().
@@ -77,6 +78,8 @@ class SamplePicker {
   /// Index in camera_ of the frame nearest to `utime` within max_pair_offset_s; -1 if there is
   /// none.
   int NearestCameraFrame(std::int64_t utime) const;
+  /// Takes the oldest camera frame away: no lidar frame can claim it.
+  PickerDecision DropCameraFrame();
   PickerDecision JudgePair(const Pair& pair);
   PickerDecision JudgeWindow();
   /// Why the window's boards are not at rest; empty if they are.
@@ -96,7 +99,8 @@ class SamplePicker {
 };
 
 /// One sample from frames of a resting board: mean poses and corners (turned to the first frame's
-/// half-turn), covariances of the mean under independent noise, the last frame's points.
+/// half-turn), the last frame's points. Covariances stay those of one frame: the errors that all
+/// frames share do not average out.
 /// @throws std::invalid_argument if there is no frame or the counts differ.
 BoardSample AverageSightings(const std::vector<LidarBoard>& lidar,
                              const std::vector<CameraBoard>& camera,

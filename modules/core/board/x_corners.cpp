@@ -35,8 +35,8 @@ constexpr float kScale = 16.0F;
 constexpr float kMinContrast = 8.0F;    // grey levels; less is noise of 2 levels
 constexpr float kMaxAsymmetry = 0.25F;  // of the contrast; noise alone has about 0.35
 // Least sqrt(-det) of the Hessian, grey levels per px^2. An ideal corner of contrast C under a blur
-// of s px has 0.32 C / s^2: 1 lets a contrast of 30 through up to 3 px of blur, and noise of 2
-// levels (0.4 here) rarely.
+// of s px has 0.32 C / s^2: 3 lets a contrast of 30 through up to 1.8 px of blur; blurrier ones are
+// found on a smaller level of the pyramid.
 constexpr float kMinSaddle = 3.0F;
 
 cv::Mat Smoothed(const cv::Mat& grey) {

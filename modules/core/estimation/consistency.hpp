@@ -23,6 +23,9 @@ struct InconsistentSample {
 
 /// Which samples hold together. Distances between the centres of two poses and angles between their
 /// normals are the same in both sensors whatever the extrinsic is; a wrong detection breaks them.
+/// So does a lidar whose ranges are all off by b: two centres at an angle a apart come out 2 b
+/// sin(a / 2) too far from each other. max_distance_m must leave room for that (b = 60 mm and a =
+/// 60 degrees take all of the default).
 struct Consistency {
   std::vector<int> consistent;  ///< Ascending indices of a largest subset that agrees pairwise.
   std::vector<InconsistentSample> inconsistent;

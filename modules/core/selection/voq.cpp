@@ -14,7 +14,7 @@ namespace {
 constexpr double kMillimetresPerMetre = 1000.0;
 constexpr double kLeastKappa = 3.0;  // of any 3x3 matrix: ||N||_F ||N^-1||_F >= trace(I)
 
-// A determinant of three unit vectors below this is rounding: kappa would exceed 1e12.
+// A determinant of three unit vectors below this is rounding: kappa would exceed about 1e6.
 constexpr double kSingularDeterminant = 1e-12;
 
 struct RankedSample {

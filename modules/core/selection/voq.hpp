@@ -9,7 +9,8 @@
 
 namespace voqcal {
 
-/// One set of three poses and its Variability of Quality (Tsai et al. 2021, arXiv:2103.12287).
+/// One set of three poses and its Variability of Quality (Tsai et al. 2021, arXiv:2103.12287, whose
+/// equations are numbered here in their order: 2 kappa, 3 kappa_LC, 4 e_dim, 5 e_be, 6 VOQ).
 struct VoqSet {
   std::array<int, 3> samples{};  ///< Indices into the samples, ascending.
   double kappa_lidar = 0.0;      ///< ||N^-1||_F ||N||_F of the three lidar normals; at least 3.
@@ -25,11 +26,11 @@ struct VoqOptions {
   std::vector<std::string> Problems() const;
 };
 
-/// e_dim, Eq. for the sum of dimension errors: sum over the 4 edges of |measured - true|,
+/// e_dim, Eq. 4: sum over the 4 edges of |measured - true|,
 /// millimetres.
 double BoardDimensionErrorMm(const std::array<double, 4>& edge_lengths_m, const BoardSpec& board);
 
-/// kappa(N) = ||N^-1||_F ||N||_F of the matrix whose rows are the unit normals; infinite if
+/// Eq. 2, kappa(N) = ||N^-1||_F ||N||_F of the matrix whose rows are the unit normals; infinite if
 /// singular. (The paper prints ||N^-1 N||; its text and its authors' code take the Frobenius
 /// condition number.)
 double NormalConditionNumber(const Eigen::Vector3d& n0,

@@ -38,6 +38,14 @@ TEST(BoardSpecProblems, NamesEachBrokenRuleWithItsValue) {
                                    "num_corners_y must be at least 3, is 2"));
 }
 
+TEST(BoardSpecProblems, RefusesASquareBoard) {
+  BoardSpec board = kBoard;
+  board.width_m = 0.83;  // of 0.85
+  EXPECT_THAT(
+      board.Problems(),
+      testing::ElementsAre("width_m and height_m must differ by at least 5 %: width_m, is 0.83"));
+}
+
 TEST(BoardSpecProblems, FindsAPatternLargerThanTheBoard) {
   BoardSpec board = kBoard;
   board.square_m = 0.16;

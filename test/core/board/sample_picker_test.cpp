@@ -72,8 +72,8 @@ TEST(SamplePicker, AcceptsAStillBoardOnce) {
                                    "pose is not new"));
   EXPECT_EQ(decisions[2].accepted->num_frames, 3);
   EXPECT_EQ(decisions[2].accepted->utime, 0);
-  // Three independent measurements: a third of the covariance of one.
-  EXPECT_NEAR(decisions[2].accepted->lidar.pose.covariance(0, 0), 1.0 / 3, 1e-12);
+  // What all frames share does not average out: three frames claim no more than one.
+  EXPECT_NEAR(decisions[2].accepted->lidar.pose.covariance(0, 0), 1.0, 1e-12);
 }
 
 TEST(SamplePicker, AnswersTheSameWhateverTheArrivalOrderOfTheStreams) {
@@ -120,6 +120,22 @@ TEST(SamplePicker, SaysWhyAPairGivesNoSample) {
                                    "no camera frame at that time",
                                    "lidar frame out of order",
                                    "accepted"));
+}
+
+TEST(SamplePicker, AccountsForCameraFramesWithoutALidarFrame) {
+  SamplePickerOptions options;
+  options.num_still_frames = 1;
+  SamplePicker picker(Board(), options);
+  std::vector<PickerDecision> decisions;
+  for (int frame = 0; frame < 4; ++frame) Append(picker.Add(Camera(frame, 0.5)), &decisions);
+  Append(picker.Add(Lidar(2, 0.5)), &decisions);
+  Append(picker.Flush(), &decisions);
+  // Frames 0 and 1 before the sample, 3 after it: each has its reason.
+  EXPECT_THAT(Outcomes(decisions),
+              testing::ElementsAre("no lidar frame at that time",
+                                   "no lidar frame at that time",
+                                   "accepted",
+                                   "no lidar frame at that time"));
 }
 
 TEST(SamplePicker, RejectsAMovingBoardAndTakesItOnRequest) {

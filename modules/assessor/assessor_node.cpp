@@ -20,12 +20,12 @@ AssessorNode::AssessorNode(const Rig& rig, Bus* bus, const std::filesystem::path
                              ": cannot make the session's folder: " + error.message());
   }
   bus_.Subscribe<samples_t>(
-      rig_.channels.calib_samples, Queue::kLatest, [this](const samples_t& m) { samples_ = m; });
+      rig_.channels.calib_samples, Queue::kState, [this](const samples_t& m) { samples_ = m; });
   bus_.Subscribe<extrinsic_averaged_t>(rig_.channels.extrinsic_averaged,
-                                       Queue::kLatest,
+                                       Queue::kState,
                                        [this](const extrinsic_averaged_t& m) { averaged_ = m; });
   bus_.Subscribe<extrinsic_refined_t>(rig_.channels.extrinsic_refined,
-                                      Queue::kLatest,
+                                      Queue::kState,
                                       [this](const extrinsic_refined_t& m) { refined_ = m; });
 }
 

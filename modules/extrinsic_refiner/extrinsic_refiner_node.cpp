@@ -9,9 +9,9 @@ namespace voqcal {
 
 ExtrinsicRefinerNode::ExtrinsicRefinerNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
   bus_.Subscribe<samples_t>(
-      rig_.channels.calib_samples, Queue::kLatest, [this](const samples_t& m) { samples_ = m; });
+      rig_.channels.calib_samples, Queue::kState, [this](const samples_t& m) { samples_ = m; });
   bus_.Subscribe<extrinsic_averaged_t>(rig_.channels.extrinsic_averaged,
-                                       Queue::kLatest,
+                                       Queue::kState,
                                        [this](const extrinsic_averaged_t& m) { averaged_ = m; });
 }
 

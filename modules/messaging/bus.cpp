@@ -15,7 +15,10 @@
 namespace voqcal {
 namespace {
 
-constexpr int kNumEvery = 500;
+// A hundred raw images are hundreds of megabytes: a deeper queue would not help a reader that is
+// too slow.
+constexpr int kNumEvery = 100;
+constexpr int kNumState = 30;
 
 /// LCM_MAX_CHANNEL_NAME_LENGTH, which lcm.h does not export.
 constexpr std::size_t kMaxChannelLength = 63;
@@ -182,7 +185,7 @@ void Bus::SubscribeDecoder(const std::string& channel,
     throw std::runtime_error("LCM cannot subscribe to '" + channel +
                              "': is multicast received on this network?");
   }
-  lcm_subscription_set_queue_capacity(handle, queue == Queue::kLatest ? 1 : kNumEvery);
+  lcm_subscription_set_queue_capacity(handle, queue == Queue::kState ? kNumState : kNumEvery);
   impl_->subscriptions.push_back(std::move(subscription));
 }
 

@@ -12,21 +12,23 @@
 
 namespace voqcal {
 
-/// Many enough for a burst of small messages; recv_buf_size is what lets images and sweeps arrive.
+/// Its recv_buf_size is what lets images and sweeps arrive; ttl=0 keeps everything on this host.
 inline constexpr char kDefaultLcmUrl[] = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
 
 /// How many undelivered messages of a channel wait, at most.
 enum class Queue {
-  kLatest,  ///< One: a slow reader skips to the newest (state that travels whole).
-  kEvery,   ///< Hundreds: nothing is skipped unless the reader falls far behind (sensor data,
-            ///< commands).
+  kState,  ///< Some tens, of state that travels whole: handlers keep the newest, Step works on it
+           ///< once none waits. (LCM drops the newest when a queue is full: a capacity of 1 keeps
+           ///< the oldest.)
+  kEvery,  ///< A hundred: nothing is skipped unless the reader falls far behind (sensor data,
+           ///< commands).
 };
 
 /// What a bus saw of one subscribed channel.
 struct ChannelCounts {
   std::int64_t num_received = 0;
-  /// Gaps in the sequence numbers (SequenceOf). Not counted with Queue::kLatest, which skips by
-  /// design.
+  /// Gaps in the sequence numbers (SequenceOf). Not counted with Queue::kState, whose next message
+  /// repeats everything.
   std::int64_t num_lost = 0;
   std::int64_t num_malformed =
       0;  ///< Could not be decoded; reported once a channel, counted always.

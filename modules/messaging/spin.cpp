@@ -34,7 +34,8 @@ class Heartbeat {
     module_.Republish();
     status_.Publish(module_, module_.State(), now);
     // After a long Step the missed beats are left out, not made up for.
-    next_ = std::max(next_ + kStatusPeriod, now);
+    next_ += kStatusPeriod;
+    if (next_ <= now) next_ = now + kStatusPeriod;
   }
 
   Clock::time_point next() const { return next_; }

@@ -12,11 +12,9 @@ namespace voqcal {
 namespace {
 
 constexpr char kMadeFromNote[] =
-    "# log_sha256: of the session's samples.lcm, the log of the accepted samples (or of the table "
-    "of\n"
-    "# poses). A result depends on samples and rig only, so a live session and a run on its "
-    "recording\n"
-    "# give the same bytes.\n";
+    "# log_sha256: of the session's samples.lcm, the log of the accepted samples. A result depends "
+    "on\n"
+    "# samples and rig only, so a live session and a run on its recording give the same bytes.\n";
 
 template <typename Vector>
 std::string List(const Vector& values) {

@@ -35,7 +35,7 @@ struct AveragedPart {
 
 /// Which bytes the result is made from. No wall-clock time: the file is the same each run.
 struct MadeFrom {
-  std::string log_sha256;  ///< Of the session's samples.lcm, or of the table of poses.
+  std::string log_sha256;  ///< Of the session's samples.lcm.
   std::string rig_sha256;
   std::string version;  ///< Of voqcal.
 };

@@ -1,6 +1,9 @@
 #include "sample_collector/sample_collector_node.hpp"
 
+#include <stdexcept>
 #include <utility>
+
+#include <spdlog/spdlog.h>
 
 #include "messaging/convert_board.hpp"
 #include "voqcal/event_t.hpp"
@@ -18,15 +21,9 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
       log_sha256_(session_.Sha256()) {
   picker_.SetKnown(session_.samples());
   bus_.Subscribe<lidar_board_t>(
-      channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& message) {
-        has_new_frames_ = true;
-        Decide(picker_.Add(SightingFromMessage(message)));
-      });
+      channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& m) { OnBoard(m); });
   bus_.Subscribe<camera_board_t>(
-      channels_.camera_board, Queue::kEvery, [this](const camera_board_t& message) {
-        has_new_frames_ = true;
-        Decide(picker_.Add(SightingFromMessage(message)));
-      });
+      channels_.camera_board, Queue::kEvery, [this](const camera_board_t& m) { OnBoard(m); });
   bus_.Subscribe<command_t>(channels_.calib_command,
                             Queue::kEvery,
                             [this](const command_t& message) { OnCommand(message); });
@@ -37,13 +34,23 @@ std::string SampleCollectorNode::State() const {
          " samples";
 }
 
+// Called when no message waits.
+bool SampleCollectorNode::Step() {
+  was_idle_ = true;
+  return false;
+}
+
 void SampleCollectorNode::Republish() {
-  if (is_finish_requested_ && !has_new_frames_) Finish();
+  // A stall of this process can pass for a silent second: only an empty queue shows that it was
+  // one.
+  if (is_finish_requested_ && !has_new_frames_ && was_idle_) Finish();
   has_new_frames_ = false;
+  was_idle_ = false;
   PublishSamples();
 }
 
 void SampleCollectorNode::Accept(const BoardSample& sample) {
+  is_finished_ = false;
   const std::int64_t id = session_.Accept(sample);
   log_sha256_ = session_.Sha256();
   Count("accepted");
@@ -57,6 +64,20 @@ void SampleCollectorNode::Finish() {
   is_finished_ = true;
   Announce(samples().empty() ? 0 : samples().back().utime, "finished", 0, "");
   PublishSamples();
+}
+
+// A message that contradicts itself is a frame without a board, and costs that frame only.
+template <typename BoardMessage>
+void SampleCollectorNode::OnBoard(const BoardMessage& message) {
+  has_new_frames_ = true;
+  decltype(SightingFromMessage(message)) sighting;
+  try {
+    sighting = SightingFromMessage(message);
+  } catch (const std::runtime_error& error) {
+    spdlog::debug("unreadable board message: {}", error.what());
+    sighting = {message.utime, {}, "unreadable board message"};
+  }
+  Decide(picker_.Add(sighting));
 }
 
 void SampleCollectorNode::OnCommand(const command_t& message) {
@@ -99,7 +120,11 @@ void SampleCollectorNode::Decide(const std::vector<PickerDecision>& decisions) {
       Accept(*decision.accepted);
     } else {
       Count(decision.reason);
-      Announce(decision.utime, "rejected", 0, decision.reason);
+      const std::string& detail = decision.detail;
+      Announce(decision.utime,
+               "rejected",
+               0,
+               detail.empty() ? decision.reason : decision.reason + ": " + detail);
     }
   }
 }

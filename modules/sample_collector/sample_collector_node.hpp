@@ -27,6 +27,7 @@ class SampleCollectorNode : public Module {
 
   std::string Name() const override { return "sample_collector"; }
   std::string State() const override;
+  bool Step() override;
   void Republish() override;
 
   /// Takes a sample that another program extracted.
@@ -39,6 +40,8 @@ class SampleCollectorNode : public Module {
   const std::vector<BoardSample>& samples() const { return session_.samples(); }
 
  private:
+  template <typename BoardMessage>
+  void OnBoard(const BoardMessage& message);
   void OnCommand(const command_t& message);
   void Discard(const command_t& message);
   void Decide(const std::vector<PickerDecision>& decisions);
@@ -57,6 +60,7 @@ class SampleCollectorNode : public Module {
   bool is_finish_requested_ = false;
   bool is_finished_ = false;
   bool has_new_frames_ = false;  // since the last Republish
+  bool was_idle_ = false;        // since the last Republish: no message waited
 };
 
 }  // namespace voqcal

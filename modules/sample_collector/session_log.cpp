@@ -57,7 +57,7 @@ SessionLog::SessionLog(const std::filesystem::path& folder)
 }
 
 std::int64_t SessionLog::Accept(BoardSample sample) {
-  sample.id = next_id_;
+  sample.id = std::max(sample.id, next_id_);
   Append(kSampleChannel, sample.utime, Encode(ToMessage(sample)));
   return sample.id;
 }

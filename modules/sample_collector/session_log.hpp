@@ -29,7 +29,8 @@ class SessionLog {
   /// @throws std::runtime_error if the folder or the log cannot be made, read or locked.
   explicit SessionLog(const std::filesystem::path& folder);
 
-  /// Numbers the sample (id 1, 2, ...) and adds it. @return its id.
+  /// Adds the sample under the next free id (1, 2, ...), or its own if that is larger (the number
+  /// of a pose in a table). @return its id.
   std::int64_t Accept(BoardSample sample);
 
   /// Takes a sample away; 0 means the newest. @return its id; nothing if there is no such sample.

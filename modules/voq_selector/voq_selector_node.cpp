@@ -14,7 +14,7 @@ std::int64_t NumCombinationsOfThree(std::int64_t n) { return n * (n - 1) * (n - 
 
 VoqSelectorNode::VoqSelectorNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
   bus_.Subscribe<samples_t>(
-      rig_.channels.calib_samples, Queue::kLatest, [this](const samples_t& m) { samples_ = m; });
+      rig_.channels.calib_samples, Queue::kState, [this](const samples_t& m) { samples_ = m; });
 }
 
 std::string VoqSelectorNode::State() const {

@@ -51,7 +51,7 @@ std::unique_ptr<OfflineRun> CollectSamples(const Rig& rig,
                                            const InputPaths& input,
                                            const std::filesystem::path& session_folder) {
   if (input.poses) return RunFromTable(rig, *input.poses, session_folder);
-  if (IsSamplesLog(*input.log)) return RunFromSamplesLog(rig, *input.log, session_folder);
+  if (IsSamplesLog(rig, *input.log)) return RunFromSamplesLog(rig, *input.log, session_folder);
   return RunFromRecording(rig, *input.log, session_folder);
 }
 
@@ -61,7 +61,8 @@ std::string CountsOf(const OfflineRun& run) {
     if (module->counters().empty()) continue;
     text += (text.empty() ? "" : "; ") + module->Name() + ": " + module->Summary();
   }
-  return text;
+  const std::string losses = run.Losses();
+  return losses.empty() ? text : text + "; in the recording: " + losses;
 }
 
 }  // namespace voqcal

@@ -65,6 +65,16 @@ void OfflineRun::Finish(bool is_collecting_only) {
   }
 }
 
+std::string OfflineRun::Losses() const {
+  std::string text;
+  for (const auto& [channel, counts] : bus_.channels()) {
+    if (counts.num_lost == 0 && counts.num_malformed == 0) continue;
+    text += (text.empty() ? "" : "; ") + channel + ": " + std::to_string(counts.num_lost) +
+            " lost, " + std::to_string(counts.num_malformed) + " unreadable";
+  }
+  return text;
+}
+
 std::vector<const Module*> OfflineRun::modules() const {
   return {&lidar_detector_,
           &camera_detector_,
@@ -80,9 +90,18 @@ void OfflineRun::HandleAll() {
   }
 }
 
-bool IsSamplesLog(const std::filesystem::path& log) {
-  const std::optional<LogEvent> first = LogReader(log).Next();
-  return first && (first->channel == kSampleChannel);
+bool IsSamplesLog(const Rig& rig, const std::filesystem::path& log) {
+  LogReader reader(log);
+  bool has_events = false;
+  while (const std::optional<LogEvent> event = reader.Next()) {
+    if (event->channel == kSampleChannel) return true;
+    if (event->channel == rig.channels.lidar_points ||
+        event->channel == rig.channels.camera_image) {
+      return false;
+    }
+    has_events = has_events || event->channel == kEventChannel;
+  }
+  return has_events;  // a session whose samples were all taken away
 }
 
 }  // namespace voqcal

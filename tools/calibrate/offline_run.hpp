@@ -42,6 +42,10 @@ class OfflineRun {
   const std::vector<BoardSample>& samples() const { return collector_.samples(); }
   const AssessorNode& assessor() const { return assessor_; }
 
+  /// "LIDAR_POINTS: 3 lost, 0 unreadable": what the recording lacks, by its sequence numbers; empty
+  /// if nothing.
+  std::string Losses() const;
+
   /// What each module counted, by module: boards, misses by reason, samples, rejections by reason.
   std::vector<const Module*> modules() const;
 
@@ -61,6 +65,6 @@ class OfflineRun {
 
 /// True if the log is a session's samples.lcm rather than a recording of sensors.
 /// @throws std::runtime_error naming the log and the cause if it cannot be read.
-bool IsSamplesLog(const std::filesystem::path& log);
+bool IsSamplesLog(const Rig& rig, const std::filesystem::path& log);
 
 }  // namespace voqcal

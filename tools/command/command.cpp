@@ -44,9 +44,9 @@ void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
   assessment_t assessment{};
   assessment.samples_revision = -1;
   bus->Subscribe<samples_t>(
-      rig.channels.calib_samples, Queue::kLatest, [&samples](const samples_t& m) { samples = m; });
+      rig.channels.calib_samples, Queue::kState, [&samples](const samples_t& m) { samples = m; });
   bus->Subscribe<assessment_t>(rig.channels.calib_assessment,
-                               Queue::kLatest,
+                               Queue::kState,
                                [&assessment](const assessment_t& m) { assessment = m; });
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(args.wait_s));

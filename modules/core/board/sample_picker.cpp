@@ -28,7 +28,7 @@ std::string EdgeProblem(const LidarBoard& lidar, const BoardSpec& board, double 
   const auto true_lengths_m = board.EdgeLengthsM();
   for (std::size_t i = 0; i < 4; ++i) {
     if (std::abs(lidar.edge_lengths_m[i] - true_lengths_m[i]) <= max_edge_error_m) continue;
-    return Format("board size: the lidar measures an edge of ", true_lengths_m[i], " m as ") +
+    return Format("the lidar measures an edge of ", true_lengths_m[i], " m as ") +
            Format("", lidar.edge_lengths_m[i], " m");
   }
   return {};
@@ -219,15 +219,15 @@ PickerDecision SamplePicker::DropCameraFrame() {
 }
 
 PickerDecision SamplePicker::JudgePair(const Pair& pair) {
-  const auto reject = [this, &pair](const std::string& reason) {
+  const auto reject = [this, &pair](const std::string& reason, const std::string& detail = "") {
     window_.clear();
-    return PickerDecision{pair.lidar.utime, {}, reason};
+    return PickerDecision{pair.lidar.utime, {}, reason, detail};
   };
   if (!pair.lidar.board) return reject("lidar: " + pair.lidar.miss);
   if (!pair.camera.board) return reject("camera: " + pair.camera.miss);
   const std::string edge_problem =
       EdgeProblem(*pair.lidar.board, board_, options_.max_edge_error_m);
-  if (!edge_problem.empty()) return reject(edge_problem);
+  if (!edge_problem.empty()) return reject("wrong board size", edge_problem);
 
   if (is_capture_requested_) {
     is_capture_requested_ = false;

@@ -41,7 +41,8 @@ using CameraSighting = Sighting<CameraBoard>;
 struct PickerDecision {
   std::int64_t utime = 0;  ///< Of the lidar frame, or of the camera frame that has none.
   std::optional<BoardSample> accepted;  ///< Its id is 0: numbering is the caller's.
-  std::string reason;                   ///< Empty if accepted.
+  std::string reason;                   ///< Empty if accepted; one of a few, to be counted.
+  std::string detail{};                 ///< What there is to add to the reason; often empty.
 };
 
 /// Pairs the two detectors' streams by sensor time and picks the samples.

@@ -116,7 +116,7 @@ TEST(SamplePicker, SaysWhyAPairGivesNoSample) {
   EXPECT_THAT(Outcomes(decisions),
               testing::ElementsAre("lidar: no plane",
                                    "camera: no chessboard",
-                                   "board size: the lidar measures an edge of 0.800 m as 1.000 m",
+                                   "wrong board size",
                                    "no camera frame at that time",
                                    "lidar frame out of order",
                                    "accepted"));
@@ -136,6 +136,19 @@ TEST(SamplePicker, AccountsForCameraFramesWithoutALidarFrame) {
                                    "no lidar frame at that time",
                                    "accepted",
                                    "no lidar frame at that time"));
+}
+
+TEST(SamplePicker, SaysWhichEdgeIsWrong) {
+  SamplePickerOptions options;
+  options.num_still_frames = 1;
+  SamplePicker picker(Board(), options);
+  auto wrong_size = Lidar(0, 0.5);
+  wrong_size.board->edge_lengths_m[1] = 1.0;
+  picker.Add(wrong_size);
+  picker.Add(Camera(0, 0.5));
+  const auto decisions = picker.Flush();
+  ASSERT_EQ(decisions.size(), 1U);
+  EXPECT_EQ(decisions[0].detail, "the lidar measures an edge of 0.800 m as 1.000 m");
 }
 
 TEST(SamplePicker, RejectsAMovingBoardAndTakesItOnRequest) {

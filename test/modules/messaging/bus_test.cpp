@@ -77,7 +77,7 @@ TEST(Bus, ServesSeveralHandlersOfAChannelAndCountsOnce) {
   int num_first = 0;
   int num_second = 0;
   bus.Subscribe<event_t>("EVENT", Queue::kEvery, [&](const event_t&) { ++num_first; });
-  bus.Subscribe<event_t>("EVENT", Queue::kLatest, [&](const event_t&) { ++num_second; });
+  bus.Subscribe<event_t>("EVENT", Queue::kState, [&](const event_t&) { ++num_second; });
   bus.Publish("EVENT", Event(1));
   HandleAll(&bus);
   EXPECT_EQ(num_first, 1);
@@ -176,7 +176,7 @@ TEST(BusLosses, AreNotSeenInARestartOrInUnnumberedMessages) {
 TEST(BusLosses, AreBoundedWhateverTheNumbers) { EXPECT_GT(LossesOf({INT64_MIN, INT64_MAX}), 0); }
 
 TEST(BusLosses, AreNotCountedWhereOnlyTheLatestIsWanted) {
-  EXPECT_EQ(LossesOf({1, 5, 9}, Queue::kLatest), 0);
+  EXPECT_EQ(LossesOf({1, 5, 9}, Queue::kState), 0);
 }
 
 TEST(SequenceOf, KnowsWhichTypesCarryANumber) {

@@ -91,8 +91,8 @@ TEST_F(OfflineRunTest, TellsASessionsLogFromARecording) {
     run.FeedSamples(test::SynthesizeSamples({}));
   }
   LogWriter(log_).Write({0, 0, "LIDAR_POINTS", {1, 2, 3}});
-  EXPECT_TRUE(IsSamplesLog(session("s") / kSamplesLogName));
-  EXPECT_FALSE(IsSamplesLog(log_));
+  EXPECT_TRUE(IsSamplesLog(test::TinySimulatedRig(), session("s") / kSamplesLogName));
+  EXPECT_FALSE(IsSamplesLog(test::TinySimulatedRig(), log_));
 }
 
 }  // namespace

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace voqcal {
+
+// One function a figure, in a file of its own. Each adds a subcommand with its flags (a seed and a
+// number of runs among them) and a callback that prints a table: what was asked, what was reached.
+
+}  // namespace voqcal

@@ -1,0 +1,11 @@
+// voqcal_figures: how accurate the algorithms are, over many seeded runs. One subcommand a figure.
+
+#include "common/tool_main.hpp"
+#include "figures/figures.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures the accuracy of voqcal's algorithms over many seeded runs.",
+               "voqcal_figures");
+  app.require_subcommand(1);
+  return voqcal::RunTool(&app, argc, argv, [] {});
+}

@@ -4,13 +4,14 @@
 #include <cerrno>
 #include <cstring>
 #include <exception>
-#include <fstream>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include <lcm/lcm.h>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 namespace voqcal {
 namespace {
@@ -35,11 +36,21 @@ std::int64_t RecvBufSize(const std::string& url) {
   return std::strtoll(url.c_str() + at + kKey.size(), nullptr, 10);
 }
 
-std::optional<std::int64_t> ReadRmemMax() {
-  std::ifstream file("/proc/sys/net/core/rmem_max");
-  std::int64_t value = 0;
-  if (file >> value) return value;
-  return std::nullopt;
+/// What the kernel gives a socket that asks for `wanted_bytes`: net.core.rmem_max caps it silently,
+/// and containers do not show that file. Linux doubles the value for its own bookkeeping
+/// (socket(7)).
+std::optional<std::int64_t> GrantedReceiveBuffer(std::int64_t wanted_bytes) {
+  const int socket_fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket_fd < 0) return std::nullopt;
+  const int wanted =
+      static_cast<int>(std::min<std::int64_t>(wanted_bytes, std::numeric_limits<int>::max() / 2));
+  int doubled = 0;
+  socklen_t size = sizeof(doubled);
+  const bool is_known =
+      setsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof(wanted)) == 0 &&
+      getsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &doubled, &size) == 0;
+  close(socket_fd);
+  return is_known ? std::optional<std::int64_t>(doubled / 2) : std::nullopt;
 }
 
 std::string CreationProblem(const std::string& url) {
@@ -151,7 +162,8 @@ void Bus::Subscription::OnMessage(const lcm_recv_buf_t* buffer, const char*, voi
 
 Bus::Bus(const std::string& url) : impl_(std::make_unique<Impl>()) {
   const std::string used_url = url.empty() ? kDefaultLcmUrl : url;
-  if (const auto warning = ReceiveBufferWarning(used_url, ReadRmemMax())) spdlog::warn(*warning);
+  const auto warning = ReceiveBufferWarning(used_url, GrantedReceiveBuffer(RecvBufSize(used_url)));
+  if (warning) spdlog::warn(*warning);
   impl_->lcm = lcm_create(used_url.c_str());
   if (impl_->lcm == nullptr) throw std::runtime_error(CreationProblem(used_url));
 }
@@ -228,16 +240,16 @@ std::int64_t Bus::num_published() const { return impl_->num_published; }
 std::int64_t Bus::num_publish_failures() const { return impl_->num_publish_failures; }
 
 std::optional<std::string> ReceiveBufferWarning(const std::string& url,
-                                                std::optional<std::int64_t> rmem_max) {
+                                                std::optional<std::int64_t> granted_bytes) {
   if (!StartsWith(url, "udpm://")) return std::nullopt;
   const std::int64_t wanted = RecvBufSize(url);
   if (wanted <= 0) {
     return "LCM URL '" + url +
            "' has no recv_buf_size: images and sweeps will be lost; add recv_buf_size=4194304";
   }
-  if (!rmem_max || *rmem_max >= wanted) return std::nullopt;
-  return "net.core.rmem_max is " + std::to_string(*rmem_max) +
-         " bytes, recv_buf_size of the LCM URL " + std::to_string(wanted) +
+  if (!granted_bytes || *granted_bytes >= wanted) return std::nullopt;
+  return "the kernel grants a receive buffer of " + std::to_string(*granted_bytes) +
+         " bytes, recv_buf_size of the LCM URL asks for " + std::to_string(wanted) +
          ": images and sweeps will be lost; run: sudo sysctl -w net.core.rmem_max=" +
          std::to_string(wanted);
 }

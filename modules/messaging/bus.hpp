@@ -107,9 +107,10 @@ std::string DecodeMessage(const void* bytes, std::size_t num_bytes, Message* mes
 /// LCM loses them without a trace: the kernel silently caps recv_buf_size at net.core.rmem_max, and
 /// a datagram that finds the buffer full is gone.
 ///
-/// @param rmem_max  bytes, of /proc/sys/net/core/rmem_max; nothing if it cannot be read.
+/// @param granted_bytes  what the kernel gives a socket that asks for recv_buf_size; nothing if
+/// unknown.
 std::optional<std::string> ReceiveBufferWarning(const std::string& url,
-                                                std::optional<std::int64_t> rmem_max);
+                                                std::optional<std::int64_t> granted_bytes);
 
 }  // namespace voqcal
 

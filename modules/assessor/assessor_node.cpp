@@ -7,6 +7,7 @@
 
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_result.hpp"
+#include "messaging/made_from.hpp"
 #include "rig/atomic_file.hpp"
 
 namespace voqcal {
@@ -36,10 +37,8 @@ std::string AssessorNode::State() const {
 
 bool AssessorNode::Step() {
   if (!samples_ || !averaged_ || !refined_) return false;
-  const std::int64_t revision = samples_->revision;
-  if (averaged_->samples_revision != revision || refined_->samples_revision != revision)
-    return false;
-  if (assessment_ && assessment_->samples_revision == revision) return false;
+  if (!IsMadeFrom(*samples_, *averaged_) || !IsMadeFrom(*samples_, *refined_)) return false;
+  if (assessment_ && IsMadeFrom(*samples_, *assessment_)) return false;
   Assess();
   Count(problem().empty() ? "assessments" : "without a result");
   Republish();
@@ -52,8 +51,7 @@ void AssessorNode::Republish() {
 
 void AssessorNode::Assess() {
   assessment_t assessment{};
-  assessment.utime = samples_->utime;
-  assessment.samples_revision = samples_->revision;
+  StampMadeFrom(*samples_, &assessment);
   assessment.problem = refined_->problem;
   result_.reset();
   if (assessment.problem.empty()) {

@@ -4,6 +4,7 @@
 
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_result.hpp"
+#include "messaging/made_from.hpp"
 
 namespace voqcal {
 
@@ -20,8 +21,8 @@ std::string ExtrinsicEstimatorNode::State() const {
 }
 
 bool ExtrinsicEstimatorNode::Step() {
-  if (!samples_ || !sets_ || samples_->revision != sets_->samples_revision) return false;
-  if (result_ && result_->samples_revision == samples_->revision) return false;
+  if (!samples_ || !sets_ || !IsMadeFrom(*samples_, *sets_)) return false;
+  if (result_ && IsMadeFrom(*samples_, *result_)) return false;
   result_ = Estimate();
   Count(result_->problem.empty() ? "estimates" : "without a result");
   Republish();
@@ -41,8 +42,7 @@ extrinsic_averaged_t ExtrinsicEstimatorNode::Estimate() const {
     result = ToMessage(averaged, sets_->sets, extrinsics);
     if (!averaged.IsUsable()) problem = "no set of three samples gives an extrinsic";
   }
-  result.utime = samples_->utime;
-  result.samples_revision = samples_->revision;
+  StampMadeFrom(*samples_, &result);
   result.problem = problem;
   result.num_inconsistent = sets_->num_inconsistent;
   result.inconsistent_ids = sets_->inconsistent_ids;

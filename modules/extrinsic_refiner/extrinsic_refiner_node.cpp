@@ -4,6 +4,7 @@
 
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_result.hpp"
+#include "messaging/made_from.hpp"
 
 namespace voqcal {
 
@@ -21,8 +22,8 @@ std::string ExtrinsicRefinerNode::State() const {
 }
 
 bool ExtrinsicRefinerNode::Step() {
-  if (!samples_ || !averaged_ || samples_->revision != averaged_->samples_revision) return false;
-  if (result_ && result_->samples_revision == samples_->revision) return false;
+  if (!samples_ || !averaged_ || !IsMadeFrom(*samples_, *averaged_)) return false;
+  if (result_ && IsMadeFrom(*samples_, *result_)) return false;
   result_ = Refine();
   Count(result_->problem.empty() ? "refinements" : "without a result");
   Republish();
@@ -45,8 +46,7 @@ extrinsic_refined_t ExtrinsicRefinerNode::Refine() const {
     result = ToMessage(refined, IdsOf(samples));
     if (!refined.IsUsable()) problem = "the refinement is " + ToString(refined.status);
   }
-  result.utime = samples_->utime;
-  result.samples_revision = samples_->revision;
+  StampMadeFrom(*samples_, &result);
   result.problem = problem;
   return result;
 }

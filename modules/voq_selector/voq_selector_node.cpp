@@ -4,6 +4,7 @@
 
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_result.hpp"
+#include "messaging/made_from.hpp"
 
 namespace voqcal {
 namespace {
@@ -23,7 +24,7 @@ std::string VoqSelectorNode::State() const {
 }
 
 bool VoqSelectorNode::Step() {
-  if (!samples_ || (result_ && result_->samples_revision == samples_->revision)) return false;
+  if (!samples_ || (result_ && IsMadeFrom(*samples_, *result_))) return false;
   result_ = Select(*samples_);
   Count(result_->problem.empty() ? "selections" : "without a result");
   Republish();
@@ -36,8 +37,7 @@ void VoqSelectorNode::Republish() {
 
 voq_sets_t VoqSelectorNode::Select(const samples_t& message) const {
   voq_sets_t result{};
-  result.utime = message.utime;
-  result.samples_revision = message.revision;
+  StampMadeFrom(message, &result);
   const std::vector<BoardSample> samples = FromMessage(message);
   const Consistency consistency = FindConsistent(samples, rig_.consistency);
   for (const InconsistentSample& each : consistency.inconsistent) {

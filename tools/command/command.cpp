@@ -9,6 +9,7 @@
 
 #include "common/tool_main.hpp"
 #include "messaging/bus.hpp"
+#include "messaging/made_from.hpp"
 #include "rig/rig.hpp"
 #include "voqcal/assessment_t.hpp"
 #include "voqcal/command_t.hpp"
@@ -51,7 +52,7 @@ void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(args.wait_s));
   Clock::time_point next_send = Clock::now();
-  while (samples.is_finished == 0 || assessment.samples_revision != samples.revision) {
+  while (samples.is_finished == 0 || !IsMadeFrom(samples, assessment)) {
     if (Clock::now() > end) {
       throw std::runtime_error(samples.is_finished == 0
                                    ? "the sample collector did not answer: is the rig running?"

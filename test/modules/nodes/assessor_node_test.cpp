@@ -107,6 +107,21 @@ TEST_F(AssessorNodeTest, WaitsForAllThreeOfOneRevision) {
   EXPECT_EQ(sent()[0].samples_revision, 6);
 }
 
+TEST_F(AssessorNodeTest, DoesNotMixSessionsOfTheSameRevision) {
+  RunStagesBefore(test::NoisySamples(5), 5);
+  Step(&node_);
+  SendSamples(test::NoisySamples(6), 5, "another log");
+  Step(&node_);
+  EXPECT_THAT(sent(), SizeIs(1));
+  Step(&selector_);
+  Step(&estimator_);
+  Step(&refiner_);
+  Step(&node_);
+  ASSERT_THAT(sent(), SizeIs(2));
+  EXPECT_EQ(sent()[1].samples_sha256, "another log");
+  EXPECT_EQ(node_.result()->made_from.log_sha256, "another log");
+}
+
 TEST_F(AssessorNodeTest, AssessesARevisionOnce) {
   RunStagesBefore(test::NoisySamples(5), 5);
   Step(&node_);

@@ -24,11 +24,15 @@ inline std::vector<BoardSample> NoisySamples(int num_samples) {
 /// The stages behind the sample collector, each of which reads CALIB_SAMPLES.
 class ChainTest : public ::testing::Test {
  protected:
-  static samples_t SamplesMessage(const std::vector<BoardSample>& samples, std::int64_t revision) {
-    return ToMessage(samples, revision, true, "log's hash");
+  static samples_t SamplesMessage(const std::vector<BoardSample>& samples,
+                                  std::int64_t revision,
+                                  const std::string& log_sha256 = "log's hash") {
+    return ToMessage(samples, revision, true, log_sha256);
   }
-  void SendSamples(const std::vector<BoardSample>& samples, std::int64_t revision) {
-    Send(&bus_, rig_.channels.calib_samples, SamplesMessage(samples, revision));
+  void SendSamples(const std::vector<BoardSample>& samples,
+                   std::int64_t revision,
+                   const std::string& log_sha256 = "log's hash") {
+    Send(&bus_, rig_.channels.calib_samples, SamplesMessage(samples, revision, log_sha256));
   }
   /// Lets a stage compute, and hands on what it publishes.
   template <typename Node>

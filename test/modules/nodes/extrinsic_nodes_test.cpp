@@ -103,6 +103,21 @@ TEST_F(ExtrinsicNodesTest, WaitForMessagesOfTheSameRevision) {
   EXPECT_THAT(refined(), IsEmpty());
 }
 
+TEST_F(ExtrinsicNodesTest, DoNotMixSessionsOfTheSameRevision) {
+  SendSamples(ExactSamples(5), 5, "one log");
+  StepAll();
+  SendSamples(ExactSamples(6), 5, "another log");
+  Step(&estimator_);
+  Step(&refiner_);
+  EXPECT_THAT(averaged(), SizeIs(1));  // the sets, and then the average, are still the first log's
+  EXPECT_THAT(refined(), SizeIs(1));
+  StepAll();
+  ASSERT_THAT(refined(), SizeIs(2));
+  EXPECT_EQ(averaged()[1].samples_sha256, "another log");
+  EXPECT_EQ(refined()[1].samples_sha256, "another log");
+  EXPECT_THAT(refined()[1].sample_ids, SizeIs(6));
+}
+
 TEST_F(ExtrinsicNodesTest, ComputeARevisionOnce) {
   SendSamples(ExactSamples(5), 5);
   StepAll();

@@ -90,5 +90,16 @@ TEST_F(VoqSelectorNodeTest, ComputesARevisionOnce) {
   EXPECT_EQ(sent().back().samples_revision, 6);
 }
 
+TEST_F(VoqSelectorNodeTest, ComputesAnotherSessionsSamplesOfTheSameRevision) {
+  SendSamples(test::NoisySamples(5), 5, "one log");
+  Step(&node_);
+  SendSamples(test::NoisySamples(4), 5, "another log");
+  Step(&node_);
+  ASSERT_THAT(sent(), SizeIs(2));
+  EXPECT_EQ(sent()[0].samples_sha256, "one log");
+  EXPECT_EQ(sent()[1].samples_sha256, "another log");
+  EXPECT_EQ(sent()[1].num_combinations, 4);
+}
+
 }  // namespace
 }  // namespace voqcal

@@ -131,6 +131,18 @@ void ReadCameraDriver(YamlSection* top,
   Finish(*options, &section);
 }
 
+void ReadScan(YamlSection* section, ScanOptions* scan) {
+  std::string pattern = ToString(scan->pattern);
+  section->Read("pattern", &pattern);
+  if (const auto known = ScanPatternFromString(pattern)) {
+    scan->pattern = *known;
+  } else {
+    section->AddError("pattern", "must be vlp16, spinning_64, spinning_128, raster or rosette");
+  }
+  section->ReadDegrees("dense_from_deg", &scan->dense_from_rad);
+  section->ReadDegrees("dense_to_deg", &scan->dense_to_rad);
+}
+
 void ReadSimulation(YamlSection* top, SimulationOptions* options) {
   YamlSection section = top->Section("simulation");
   section.Read("seed", &options->seed);
@@ -142,6 +154,9 @@ void ReadSimulation(YamlSection* top, SimulationOptions* options) {
   section.Read("move_s", &options->move_s);
   section.Read("min_distance_m", &options->min_distance_m);
   section.Read("max_distance_m", &options->max_distance_m);
+  section.Read("has_clutter", &options->has_clutter);
+  section.Read("second_board_scale", &options->second_board_scale);
+  ReadScan(&section, &options->scan);
   section.Read("range_noise_m", &options->range_noise_m);
   section.Read("ring_bias_m", &options->ring_bias_m);
   section.Read("common_bias_m", &options->common_bias_m);

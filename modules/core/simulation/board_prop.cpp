@@ -50,28 +50,6 @@ bool BoardFace::IsDark(int cell) const {
   return i >= 0 && j >= 0 && i < num_x_ && j < num_y_ && (i + j) % 2 == 0;
 }
 
-std::optional<double> Tube::Cast(const Eigen::Vector3d& origin_m,
-                                 const Eigen::Vector3d& direction) const {
-  // With a = end - begin and p(t) = origin - begin + t * direction, the surface is where the part
-  // of p(t) across a has the length of the radius: |p|^2 |a|^2 - (p.a)^2 = r^2 |a|^2, a quadratic
-  // in t.
-  const Eigen::Vector3d axis = end_m - begin_m;
-  const Eigen::Vector3d start = origin_m - begin_m;
-  const double axis_axis = axis.squaredNorm();
-  const double axis_direction = axis.dot(direction);
-  const double axis_start = axis.dot(start);
-  const double a = axis_axis - axis_direction * axis_direction;
-  const double b = axis_axis * start.dot(direction) - axis_start * axis_direction;
-  const double c =
-      axis_axis * (start.squaredNorm() - radius_m * radius_m) - axis_start * axis_start;
-  const double discriminant = b * b - a * c;
-  if (discriminant < 0 || a <= 0) return std::nullopt;
-  const double range_m = (-b - std::sqrt(discriminant)) / a;
-  const double along = axis_start + range_m * axis_direction;
-  if (range_m <= 0 || along < 0 || along > axis_axis) return std::nullopt;
-  return range_m;
-}
-
 std::array<Tube, 5> StandTubes(const Eigen::Isometry3d& T_lidar_board,
                                const BoardSpec& board,
                                double floor_z_m) {

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "core/board/board_spec.hpp"
+#include "core/simulation/props.hpp"
 
 namespace voqcal {
 
@@ -35,17 +35,6 @@ class BoardFace {
   double bottom_m_;
   double half_width_m_;
   double half_height_m_;
-};
-
-/// A straight round bar of the stand, without end caps.
-struct Tube {
-  Eigen::Vector3d begin_m;
-  Eigen::Vector3d end_m;
-  double radius_m = 0.0;
-
-  /// Distance along a ray (unit direction) to the tube's outside.
-  std::optional<double> Cast(const Eigen::Vector3d& origin_m,
-                             const Eigen::Vector3d& direction) const;
 };
 
 constexpr float kTubeAlbedo = 0.12F;  ///< Dull black metal.

@@ -10,7 +10,7 @@
 #include "core/geometry/rigid.hpp"
 #include "core/simulation/board_prop.hpp"
 #include "core/simulation/keyed_noise.hpp"
-#include "core/simulation/lidar_simulator.hpp"
+#include "core/simulation/scan_pattern.hpp"
 
 namespace voqcal {
 namespace {
@@ -20,7 +20,7 @@ constexpr double kMaxTiltRad = 40 * kRadPerDeg;     // yaw and pitch, each
 constexpr double kMaxObliqueRad = 55 * kRadPerDeg;  // normal against the line of sight
 constexpr double kMidRollRad = 45 * kRadPerDeg;     // a diamond: beams cross all four edges
 constexpr double kMaxRollOffsetRad = 15 * kRadPerDeg;
-constexpr double kElevationMarginRad = 0.25 * kRadPerDeg;
+constexpr double kBeamMarginRad = 0.25 * kRadPerDeg;
 constexpr double kImageMarginShare = 0.02;  // of the shorter side
 constexpr double kShellClearanceM = 0.2;
 constexpr int kNumPerEdge = 6;         // outline points that are checked
@@ -109,10 +109,9 @@ class StopFinder {
            HasRoom(T_lidar_board, outline_m) && IsUnhidden(outline_m);
   }
 
-  static bool IsBetweenBeams(const std::vector<Eigen::Vector3d>& outline_m) {
-    return std::all_of(outline_m.begin(), outline_m.end(), [](const auto& point) {
-      const double elevation_rad = std::atan2(point.z(), point.template head<2>().norm());
-      return std::abs(elevation_rad) < kMaxBeamElevationRad - kElevationMarginRad;
+  bool IsBetweenBeams(const std::vector<Eigen::Vector3d>& outline_m) const {
+    return std::all_of(outline_m.begin(), outline_m.end(), [this](const Eigen::Vector3d& point) {
+      return IsInFieldOfView(options_.scan.pattern, point, kBeamMarginRad);
     });
   }
 

@@ -19,7 +19,7 @@ using Placement = Eigen::Matrix<double, 6, 1>;
 /// Where the board is at which time: a list of stops, and smooth moves between them.
 ///
 /// Stops are spread over the camera's width and over the distances. At each of them the whole board
-/// is in the image, between the lidar's lowest and highest beam, hidden by nothing and clear of
+/// is in the image, in the lidar's field of view, hidden by nothing and clear of
 /// walls and furniture.
 class BoardScript {
  public:

@@ -14,6 +14,7 @@ enum class NoiseUse : std::uint64_t {
   kDropout,
   kPixelTable,
   kPixelRow,
+  kClutter,
 };
 
 /// Random numbers without state: each is a hash of (seed, use, frame time, index), so it does not

@@ -2,68 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 #include "core/simulation/keyed_noise.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr int kNumRings = 16;
-constexpr int kNumColumns = 1800;
-constexpr double kSweepS = 0.1;
 constexpr double kMaxBlendM = 0.3;      // farther apart, the receiver tells echoes apart
 constexpr double kFullIntensity = 100;  // of a white surface, VLP-16 scale
 constexpr int kBoardSurface = -1;
+constexpr int kNoSurface = std::numeric_limits<int>::min();
 constexpr int kFirstTubeSurface = -2;  // and downwards, one for each tube
 
-std::vector<Eigen::Vector3d> BeamDirections() {
-  std::vector<Eigen::Vector3d> directions;
-  directions.reserve(kNumRings * kNumColumns);
-  for (int column = 0; column < kNumColumns; ++column) {
-    const double azimuth_rad = M_PI - column * (2.0 * M_PI / kNumColumns);
-    for (int ring = 0; ring < kNumRings; ++ring) {
-      const double elevation_rad = kMaxBeamElevationRad * (2.0 * ring / (kNumRings - 1) - 1.0);
-      directions.emplace_back(std::cos(elevation_rad) * std::cos(azimuth_rad),
-                              std::cos(elevation_rad) * std::sin(azimuth_rad),
-                              std::sin(elevation_rad));
-    }
-  }
-  return directions;
-}
-
-// The rays that stand for a beam, the centre's first: 1 + 6 + 12 on rings that share its disc
-// evenly.
-std::vector<Eigen::Vector3d> RaysOfBeam(const Eigen::Vector3d& centre, double divergence_rad) {
-  std::vector<Eigen::Vector3d> rays{centre};
-  if (divergence_rad == 0) return rays;
-  const Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(centre).normalized();
-  const Eigen::Vector3d up = centre.cross(left);
-  for (const int count : {6, 12}) {
-    const double radius = divergence_rad / 2 * (count == 6 ? 0.46 : 0.84);  // middle of their areas
-    for (int i = 0; i < count; ++i) {
-      const double angle = (i + 0.5) * 2.0 * M_PI / count;
-      rays.push_back(
-          (centre + radius * (std::cos(angle) * left + std::sin(angle) * up)).normalized());
-    }
-  }
-  return rays;
-}
-
-// Directions that can meet a sphere.
-struct Cone {
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-  double min_cosine = -1.0;  // all of them
-
-  Cone(const Eigen::Vector3d& centre_m, double radius_m, double margin_rad) {
-    const double distance_m = centre_m.norm();
-    if (distance_m <= radius_m) return;
-    axis = centre_m / distance_m;
-    min_cosine = std::cos(std::min(std::asin(radius_m / distance_m) + margin_rad, M_PI));
-  }
-  bool Holds(const Eigen::Vector3d& direction) const { return axis.dot(direction) >= min_cosine; }
-};
-
-Cone ConeAround(const std::vector<Eigen::Vector3d>& points_m, double margin_m, double margin_rad) {
+ViewCone ConeAround(const std::vector<Eigen::Vector3d>& points_m,
+                    double margin_m,
+                    double margin_rad) {
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
   for (const auto& point : points_m) middle_m += point / static_cast<double>(points_m.size());
   double radius_m = 0.0;
@@ -95,11 +50,15 @@ struct LidarSimulator::Moving {
                    divergence_rad),
         stand_cone(ConeAround(EndsOf(tubes), 0.05, divergence_rad)) {}
 
+  bool MayMeet(const Eigen::Vector3d& direction) const {
+    return board_cone.Holds(direction) || stand_cone.Holds(direction);
+  }
+
   Eigen::Isometry3d T_lidar_board;
   Eigen::Isometry3d T_board_lidar;
   std::array<Tube, 5> tubes;
-  Cone board_cone;
-  Cone stand_cone;
+  ViewCone board_cone;
+  ViewCone stand_cone;
 };
 
 struct LidarSimulator::Hit {
@@ -112,74 +71,162 @@ struct LidarSimulator::Hit {
 LidarSimulator::LidarSimulator(const SimulationOptions& options,
                                const BoardSpec& board,
                                const Room& room)
-    : options_(options), board_(board), face_(board), room_(room), directions_(BeamDirections()) {
+    : options_(options),
+      board_(board),
+      face_(board),
+      room_(room),
+      rays_(options.beam_divergence_rad) {
+  for (const Bound& bound : room.Bounds()) {
+    solid_cones_.emplace_back(bound.centre_m, bound.radius_m, options.beam_divergence_rad);
+  }
   const KeyedNoise noise(options.seed, NoiseUse::kRingBias);
-  for (int ring = 0; ring < kNumRings; ++ring) {
-    ring_bias_m_[ring] = options.ring_bias_m * noise.Normals(ring).first;
+  for (int emitter = 0; emitter < NumEmitters(options.scan.pattern); ++emitter) {
+    emitter_bias_m_.push_back(options.ring_bias_m * noise.Normals(emitter).first);
   }
-  room_echoes_.reserve(directions_.size());
-  for (int beam = 0; beam < static_cast<int>(directions_.size()); ++beam) {
-    room_echoes_.push_back(CastBeam(beam, nullptr));
-  }
+  if (!IsRepeating(options.scan.pattern)) return;
+  beams_ = BeamsOfSweep(options.scan, 0);
+  room_echoes_ = RoomEchoes(beams_);
 }
 
 PointCloud LidarSimulator::Sweep(const Eigen::Isometry3d& T_lidar_board,
                                  std::int64_t frame_us) const {
+  const bool is_repeating = IsRepeating(options_.scan.pattern);
+  const auto own_beams =
+      is_repeating ? std::vector<ScanBeam>() : BeamsOfSweep(options_.scan, frame_us);
+  const auto own_echoes = is_repeating ? std::vector<Echo>() : RoomEchoes(own_beams);
+  const std::vector<ScanBeam>& beams = is_repeating ? beams_ : own_beams;
+  const std::vector<Echo>& room_echoes = is_repeating ? room_echoes_ : own_echoes;
   const Moving moving(T_lidar_board, board_, room_.FloorZM(), options_.beam_divergence_rad);
   const KeyedNoise range_noise(options_.seed, NoiseUse::kRange, frame_us);
   const KeyedNoise dropout_noise(options_.seed, NoiseUse::kDropout, frame_us);
   PointCloud cloud;
-  cloud.has_intensity = cloud.has_ring = cloud.has_time = true;
-  cloud.points.reserve(directions_.size());
-  for (int beam = 0; beam < static_cast<int>(directions_.size()); ++beam) {
+  cloud.has_intensity = cloud.has_time = true;
+  cloud.has_ring = HasRings(options_.scan.pattern);
+  cloud.points.reserve(beams.size());
+  for (std::size_t beam = 0; beam < beams.size(); ++beam) {
     if (dropout_noise.Uniform(beam) < options_.dropout) continue;
-    const Eigen::Vector3d& direction = directions_[beam];
-    const bool is_moving = moving.board_cone.Holds(direction) || moving.stand_cone.Holds(direction);
-    const Echo echo = is_moving ? CastBeam(beam, &moving) : room_echoes_[beam];
-    const int ring = beam % kNumRings;
+    const Eigen::Vector3d& direction = beams[beam].direction;
+    const int emitter = beams[beam].emitter;
+    const Echo echo = moving.MayMeet(direction)
+                          ? EchoWithMoving(direction, moving, room_echoes[beam])
+                          : room_echoes[beam];
     const auto [range_normal, intensity_normal] = range_noise.Normals(beam);
     const double range_m = echo.range_m + echo.bias_m + options_.common_bias_m +
-                           ring_bias_m_[ring] + options_.range_noise_m * range_normal;
+                           emitter_bias_m_[emitter] + options_.range_noise_m * range_normal;
     const double intensity =
         kFullIntensity * echo.albedo + options_.intensity_noise * intensity_normal;
     LidarPoint point;
     point.position_m = (range_m * direction).cast<float>();
     point.intensity = static_cast<float>(std::max(intensity, 0.0));
-    point.ring = static_cast<std::uint16_t>(ring);
-    point.time_s = static_cast<float>(beam / kNumRings * (kSweepS / kNumColumns));
+    if (cloud.has_ring) point.ring = static_cast<std::uint16_t>(emitter);
+    point.time_s = beams[beam].time_s;
     cloud.points.push_back(point);
   }
   return cloud;
 }
 
-LidarSimulator::Echo LidarSimulator::CastBeam(int beam, const Moving* moving) const {
+BoardHits LidarSimulator::CountBoardHits(const Eigen::Isometry3d& T_lidar_board,
+                                         std::int64_t frame_us) const {
+  const bool is_repeating = IsRepeating(options_.scan.pattern);
+  const auto own_beams =
+      is_repeating ? std::vector<ScanBeam>() : BeamsOfSweep(options_.scan, frame_us);
+  const std::vector<ScanBeam>& beams = is_repeating ? beams_ : own_beams;
+  const Moving moving(T_lidar_board, board_, room_.FloorZM(), options_.beam_divergence_rad);
+  const KeyedNoise dropout_noise(options_.seed, NoiseUse::kDropout, frame_us);
+  std::set<int> emitters;
+  BoardHits hits;
+  for (std::size_t beam = 0; beam < beams.size(); ++beam) {
+    const Eigen::Vector3d& direction = beams[beam].direction;
+    if (!moving.board_cone.Holds(direction)) continue;
+    if (dropout_noise.Uniform(beam) < options_.dropout) continue;
+    if (Cast(direction, &moving, SolidsNear(direction)).surface != kBoardSurface) continue;
+    ++hits.num_points;
+    emitters.insert(beams[beam].emitter);
+  }
+  if (HasRings(options_.scan.pattern)) hits.num_rings = static_cast<int>(emitters.size());
+  return hits;
+}
+
+std::vector<LidarSimulator::Echo> LidarSimulator::RoomEchoes(
+    const std::vector<ScanBeam>& beams) const {
+  std::vector<Echo> echoes;
+  echoes.reserve(beams.size());
+  for (const ScanBeam& beam : beams) echoes.push_back(CastBeam(beam.direction, nullptr));
+  return echoes;
+}
+
+// Most beams near the board end wholly on it, or pass it wholly: then the room need not be asked.
+LidarSimulator::Echo LidarSimulator::EchoWithMoving(const Eigen::Vector3d& direction,
+                                                    const Moving& moving,
+                                                    const Echo& room_echo) const {
+  bool is_all_board = true;
+  bool is_all_room = true;
+  double farthest_m = 0.0;
+  Hit centre;
+  for (const auto& ray : rays_.Around(direction)) {
+    const Hit hit = CastMoving(ray, moving);
+    if (farthest_m == 0) centre = hit;
+    is_all_board = is_all_board && hit.surface == kBoardSurface;
+    is_all_room = is_all_room && hit.surface == kNoSurface;
+    farthest_m = std::max(farthest_m, hit.range_m);
+  }
+  if (is_all_room) return room_echo;
+  if (is_all_board && farthest_m < room_echo.nearest_m) return EchoOf(centre);
+  return CastBeam(direction, &moving);
+}
+
+LidarSimulator::Echo LidarSimulator::CastBeam(const Eigen::Vector3d& direction,
+                                              const Moving* moving) const {
+  const std::vector<int> solids = SolidsNear(direction);
   std::vector<Hit> hits;
   bool is_one_surface = true;
-  for (const auto& ray : RaysOfBeam(directions_[beam], options_.beam_divergence_rad)) {
-    hits.push_back(Cast(ray, moving));
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const auto& ray : rays_.Around(direction)) {
+    hits.push_back(Cast(ray, moving, solids));
     is_one_surface = is_one_surface && hits.back().surface == hits.front().surface;
+    nearest_m = std::min(nearest_m, hits.back().range_m);
   }
-  return is_one_surface ? EchoOf(hits.front()) : EchoOfMixture(&hits);
+  Echo echo = is_one_surface ? EchoOf(hits.front()) : EchoOfMixture(&hits);
+  echo.nearest_m = nearest_m;
+  return echo;
+}
+
+std::vector<int> LidarSimulator::SolidsNear(const Eigen::Vector3d& direction) const {
+  std::vector<int> solids;
+  for (std::size_t i = 0; i < solid_cones_.size(); ++i) {
+    if (solid_cones_[i].Holds(direction)) solids.push_back(static_cast<int>(i));
+  }
+  return solids;
 }
 
 LidarSimulator::Hit LidarSimulator::Cast(const Eigen::Vector3d& direction,
-                                         const Moving* moving) const {
-  const Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+                                         const Moving* moving,
+                                         const std::vector<int>& solids) const {
   Hit hit;
-  hit.room = room_.Cast(origin_m, direction);
+  hit.room = room_.Cast(Eigen::Vector3d::Zero(), direction, solids);
   hit.range_m = hit.room.range_m;
   hit.surface = hit.room.surface;
   if (moving == nullptr) return hit;
-  for (std::size_t i = 0; i < moving->tubes.size(); ++i) {
-    const auto range_m = moving->tubes[i].Cast(origin_m, direction);
+  const Hit moving_hit = CastMoving(direction, *moving);
+  return moving_hit.range_m < hit.range_m ? moving_hit : hit;
+}
+
+// Board and stand alone; an infinite range if neither is met.
+LidarSimulator::Hit LidarSimulator::CastMoving(const Eigen::Vector3d& direction,
+                                               const Moving& moving) const {
+  Hit hit;
+  hit.range_m = std::numeric_limits<double>::infinity();
+  hit.surface = kNoSurface;
+  for (std::size_t i = 0; i < moving.tubes.size(); ++i) {
+    const auto range_m = moving.tubes[i].Cast(Eigen::Vector3d::Zero(), direction);
     if (!range_m || *range_m >= hit.range_m) continue;
     hit.range_m = *range_m;
     hit.surface = kFirstTubeSurface - static_cast<int>(i);
   }
   const double range_m =
-      -moving->T_board_lidar(2, 3) / moving->T_board_lidar.linear().row(2).dot(direction);
+      -moving.T_board_lidar(2, 3) / moving.T_board_lidar.linear().row(2).dot(direction);
   if (!(range_m > 0) || range_m >= hit.range_m) return hit;
-  const Eigen::Vector3d point_board_m = moving->T_board_lidar * (range_m * direction);
+  const Eigen::Vector3d point_board_m = moving.T_board_lidar * (range_m * direction);
   const int cell = face_.CellAt(point_board_m.x(), point_board_m.y());
   if (face_.IsOutside(cell)) return hit;
   hit.range_m = range_m;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -8,17 +7,21 @@
 
 #include "core/board/board_spec.hpp"
 #include "core/lidar/point_cloud.hpp"
+#include "core/simulation/beam_rays.hpp"
 #include "core/simulation/board_prop.hpp"
 #include "core/simulation/room.hpp"
+#include "core/simulation/scan_pattern.hpp"
 #include "core/simulation/simulation.hpp"
 
 namespace voqcal {
 
-constexpr double kMaxBeamElevationRad =
-    15.0 * M_PI / 180.0;  ///< Of the VLP-16; the lowest is minus this.
+/// What of a sweep falls on the board.
+struct BoardHits {
+  int num_points = 0;
+  int num_rings = 0;  ///< Zero if the sensor has no rings.
+};
 
-/// A VLP-16 at the origin of the lidar frame: 16 rings at 2 degrees, 1800 columns a turn of 0.1 s,
-/// from behind clockwise.
+/// A lidar at the origin of the lidar frame.
 ///
 /// A beam is a cone. Where it meets surfaces of different depth it answers as real ones do: with
 /// the stronger echo if they are farther apart than it can blend, else with a range in between.
@@ -28,28 +31,42 @@ class LidarSimulator {
 
   PointCloud Sweep(const Eigen::Isometry3d& T_lidar_board, std::int64_t frame_us) const;
 
+  /// The truth about the same sweep: returns whose beam's centre ends on the board.
+  BoardHits CountBoardHits(const Eigen::Isometry3d& T_lidar_board, std::int64_t frame_us) const;
+
  private:
   /// What a beam would read without noise.
   struct Echo {
     double range_m = 0.0;
     double albedo = 0.0;
-    double bias_m = 0.0;  ///< By the shade of the board's square.
+    double bias_m = 0.0;     ///< By the shade of the board's square.
+    double nearest_m = 0.0;  ///< Where the first of the beam's rays ends.
   };
   struct Moving;  ///< Board and stand at one time.
   struct Hit;     ///< Where one ray of a beam ends.
 
-  Hit Cast(const Eigen::Vector3d& direction, const Moving* moving) const;
-  Echo CastBeam(int beam, const Moving* moving) const;
+  std::vector<int> SolidsNear(const Eigen::Vector3d& direction) const;
+  Hit CastMoving(const Eigen::Vector3d& direction, const Moving& moving) const;
+  Hit Cast(const Eigen::Vector3d& direction,
+           const Moving* moving,
+           const std::vector<int>& solids) const;
+  Echo CastBeam(const Eigen::Vector3d& direction, const Moving* moving) const;
+  Echo EchoWithMoving(const Eigen::Vector3d& direction,
+                      const Moving& moving,
+                      const Echo& room_echo) const;
   Echo EchoOfMixture(std::vector<Hit>* hits) const;
   Echo EchoOf(const Hit& hit) const;
+  std::vector<Echo> RoomEchoes(const std::vector<ScanBeam>& beams) const;
 
   SimulationOptions options_;
   BoardSpec board_;
   BoardFace face_;
   Room room_;
-  std::array<double, 16> ring_bias_m_{};
-  std::vector<Eigen::Vector3d> directions_;  ///< Of the beams, column by column, lowest ring first.
-  std::vector<Echo> room_echoes_;            ///< Of each beam in the room without the board.
+  BeamRays rays_;
+  std::vector<ViewCone> solid_cones_;  ///< Where each of the room's solids can be met.
+  std::vector<double> emitter_bias_m_;
+  std::vector<ScanBeam> beams_;    ///< Of every sweep, if the pattern repeats.
+  std::vector<Echo> room_echoes_;  ///< Of each of them in the room without the board.
 };
 
 }  // namespace voqcal

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace voqcal {
 namespace {
@@ -76,6 +77,27 @@ Eigen::Vector3d InverseDirection(const Eigen::Vector3d& direction) {
       [](double d) { return 1.0 / (std::abs(d) < kTiny ? std::copysign(kTiny, d) : d); });
 }
 
+Eigen::Vector3d NormalOf(const Tube& tube, const Eigen::Vector3d& point_m) {
+  const Eigen::Vector3d axis = (tube.end_m - tube.begin_m).normalized();
+  const Eigen::Vector3d from_begin_m = point_m - tube.begin_m;
+  return (from_begin_m - axis.dot(from_begin_m) * axis).normalized();
+}
+
+Eigen::Vector3d NormalOf(const Panel& panel, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d normal = panel.T_lidar_panel.linear().col(2);
+  return normal.dot(direction) > 0 ? Eigen::Vector3d(-normal) : normal;
+}
+
+int NumSolidsOf(const Props& props) {
+  return static_cast<int>(props.boxes.size() + props.tubes.size() + props.panels.size());
+}
+
+std::vector<int> NumbersBelow(int count) {
+  std::vector<int> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
+
 Material ShellMaterial(int axis, bool is_upper) {
   if (axis == 2) return is_upper ? Material::kCeiling : Material::kFloor;
   return axis == 0 && is_upper ? Material::kDoor : Material::kWall;
@@ -83,35 +105,89 @@ Material ShellMaterial(int axis, bool is_upper) {
 
 }  // namespace
 
-Room::Room()
+Room::Room(const Props& props)
     : interior_(MakeBox(-4.0, kFrontXM, -4.0, 4.0, kFloorZM, kCeilingZM, Material::kWall)),
       shell_(
           MakeBox(-4.0, kFrontXM + kDoorDepthM, -4.0, 4.0, kFloorZM, kCeilingZM, Material::kWall)),
-      boxes_(MakeBoxes()) {}
+      num_surround_(kNumSurround),
+      props_{MakeBoxes(), {}, {}} {
+  props_.Append(props);
+  all_solids_ = NumbersBelow(NumSolidsOf(props_));
+}
+
+Room::Room(const Box& hall, const Props& props)
+    : interior_(hall), shell_(hall), props_(props), all_solids_(NumbersBelow(NumSolidsOf(props))) {}
 
 RoomHit Room::Cast(const Eigen::Vector3d& origin_lidar_m,
                    const Eigen::Vector3d& direction_lidar) const {
+  return Cast(origin_lidar_m, direction_lidar, all_solids_);
+}
+
+RoomHit Room::Cast(const Eigen::Vector3d& origin_lidar_m,
+                   const Eigen::Vector3d& direction_lidar,
+                   const std::vector<int>& solids) const {
+  const int num_boxes = static_cast<int>(props_.boxes.size());
+  const int num_tubes = static_cast<int>(props_.tubes.size());
   const Eigen::Vector3d inverse_direction = InverseDirection(direction_lidar);
   const Crossing shell = Cross(shell_, origin_lidar_m, inverse_direction);
   double range_m = shell.leave;
   int axis = shell.leave_axis;
-  int box = -1;
-  for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) {
-    const Crossing crossing = Cross(boxes_[i], origin_lidar_m, inverse_direction);
-    if (crossing.enter <= 0 || crossing.enter >= crossing.leave || crossing.enter >= range_m)
-      continue;
-    range_m = crossing.enter;
-    axis = crossing.enter_axis;
-    box = i;
+  int first = -1;
+  for (const int solid : solids) {
+    if (solid < num_boxes) {
+      const Crossing crossing = Cross(props_.boxes[solid], origin_lidar_m, inverse_direction);
+      if (crossing.enter <= 0 || crossing.enter >= crossing.leave || crossing.enter >= range_m)
+        continue;
+      range_m = crossing.enter;
+      axis = crossing.enter_axis;
+    } else {
+      const std::optional<double> met_m =
+          solid < num_boxes + num_tubes
+              ? props_.tubes[solid - num_boxes].Cast(origin_lidar_m, direction_lidar)
+              : props_.panels[solid - num_boxes - num_tubes].Cast(origin_lidar_m, direction_lidar);
+      if (!met_m || *met_m >= range_m) continue;
+      range_m = *met_m;
+    }
+    first = solid;
   }
-  const bool is_forward = direction_lidar[axis] > 0;
   RoomHit hit;
   hit.range_m = range_m;
-  hit.surface = 6 * (box + 1) + 2 * axis + (is_forward ? 1 : 0);
-  hit.material = box < 0 ? ShellMaterial(axis, is_forward) : boxes_[box].material;
   hit.point_lidar_m = origin_lidar_m + range_m * direction_lidar;
+  if (first >= num_boxes) {
+    hit.surface = 6 * (num_boxes + 1) + first - num_boxes;
+    if (first < num_boxes + num_tubes) {
+      const Tube& tube = props_.tubes[first - num_boxes];
+      hit.material = tube.material;
+      hit.normal_lidar = NormalOf(tube, hit.point_lidar_m);
+    } else {
+      const Panel& panel = props_.panels[first - num_boxes - num_tubes];
+      hit.material = panel.material;
+      hit.normal_lidar = NormalOf(panel, direction_lidar);
+    }
+    return hit;
+  }
+  const bool is_forward = direction_lidar[axis] > 0;
+  hit.surface = 6 * (first + 1) + 2 * axis + (is_forward ? 1 : 0);
+  hit.material = first < 0 ? ShellMaterial(axis, is_forward) : props_.boxes[first].material;
   hit.normal_lidar[axis] = is_forward ? -1.0 : 1.0;
   return hit;
+}
+
+std::vector<Bound> Room::Bounds() const {
+  std::vector<Bound> bounds;
+  for (const Box& box : props_.boxes) {
+    bounds.push_back(
+        {(box.min_lidar_m + box.max_lidar_m) / 2, (box.max_lidar_m - box.min_lidar_m).norm() / 2});
+  }
+  for (const Tube& tube : props_.tubes) {
+    bounds.push_back(
+        {(tube.begin_m + tube.end_m) / 2, (tube.end_m - tube.begin_m).norm() / 2 + tube.radius_m});
+  }
+  for (const Panel& panel : props_.panels) {
+    bounds.push_back(
+        {panel.T_lidar_panel.translation(), std::hypot(panel.width_m, panel.height_m) / 2});
+  }
+  return bounds;
 }
 
 double Room::DistanceToShellM(const Eigen::Vector3d& point_lidar_m) const {
@@ -121,11 +197,14 @@ double Room::DistanceToShellM(const Eigen::Vector3d& point_lidar_m) const {
 
 double Room::DistanceToFurnitureM(const Eigen::Vector3d& point_lidar_m) const {
   double nearest_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = kNumSurround; i < boxes_.size(); ++i) {
-    const Eigen::Vector3d outside_m = (boxes_[i].min_lidar_m - point_lidar_m)
-                                          .cwiseMax(point_lidar_m - boxes_[i].max_lidar_m)
-                                          .cwiseMax(0.0);
-    nearest_m = std::min(nearest_m, outside_m.norm());
+  for (std::size_t i = num_surround_; i < props_.boxes.size(); ++i) {
+    nearest_m = std::min(nearest_m, DistanceM(props_.boxes[i], point_lidar_m));
+  }
+  for (const Tube& tube : props_.tubes) {
+    nearest_m = std::min(nearest_m, DistanceM(tube, point_lidar_m));
+  }
+  for (const Panel& panel : props_.panels) {
+    nearest_m = std::min(nearest_m, DistanceM(panel, point_lidar_m));
   }
   return nearest_m;
 }

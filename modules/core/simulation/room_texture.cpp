@@ -111,6 +111,15 @@ Colour Cupboard(double u, double v) {
   return std::abs(v + 0.3) < 0.01 ? Colour::Constant(0.12F) : Colour(0.52F, 0.42F, 0.36F);
 }
 
+// Striped or plain, in a colour of its own for each garment.
+Colour Cloth(double v, int surface) {
+  const Colour colour(
+      LatticeValue(surface, 8, 0), LatticeValue(surface, 9, 0), LatticeValue(surface, 10, 0));
+  const bool has_stripes = LatticeValue(surface, 11, 0) > 0.6F;
+  const float shade = has_stripes && IsOnLine(v, 0.1, 0.05) ? 0.5F : 1.0F;
+  return shade * (0.1F * Colour::Ones() + 0.6F * colour);
+}
+
 Colour Paint(Material material, double u, double v, int surface) {
   switch (material) {
     case Material::kFloor:
@@ -129,6 +138,14 @@ Colour Paint(Material material, double u, double v, int surface) {
       return Crate(u, v);
     case Material::kCupboard:
       return Cupboard(u, v);
+    case Material::kCloth:
+      return Cloth(v, surface);
+    case Material::kSkin:
+      return Colour(0.45F, 0.55F, 0.72F);
+    case Material::kMetal:
+      return Colour::Constant(0.12F);
+    case Material::kWhiteboard:
+      return Colour(0.82F, 0.83F, 0.83F);
   }
   return Colour::Zero();
 }

@@ -6,6 +6,7 @@
 
 #include "core/simulation/board_script.hpp"
 #include "core/simulation/camera_simulator.hpp"
+#include "core/simulation/clutter.hpp"
 #include "core/simulation/lidar_simulator.hpp"
 #include "core/simulation/room.hpp"
 
@@ -27,6 +28,15 @@ const SimulationOptions& Checked(const SimulationOptions& options,
   RequireNone("board", board.Problems());
   RequireNone("camera", camera.Problems());
   return options;
+}
+
+Room RoomOf(const SimulationOptions& options, const BoardSpec& board) {
+  ClutterOptions clutter;
+  if (!options.has_clutter) {
+    clutter.num_people = clutter.num_tripods = clutter.num_doors = clutter.num_furniture = 0;
+  }
+  clutter.second_board_scale = options.second_board_scale;
+  return Room(DrawClutter(clutter, board, Room().Interior(), options.seed));
 }
 
 std::int64_t Microseconds(double time_s) { return std::llround(time_s * 1e6); }
@@ -59,6 +69,10 @@ std::vector<std::string> SimulationOptions::Problems() const {
   require(max_distance_m >= min_distance_m && std::isfinite(max_distance_m),
           "max_distance_m must be at least min_distance_m",
           max_distance_m);
+  require(second_board_scale == 0 || (second_board_scale >= 0.2 && second_board_scale <= 2.0),
+          "second_board_scale must be 0 or within 0.2 and 2",
+          second_board_scale);
+  for (const std::string& problem : scan.Problems()) problems.push_back(problem);
   require_sigma("range_noise_m must not be negative", range_noise_m);
   require_sigma("ring_bias_m must not be negative", ring_bias_m);
   require(std::isfinite(common_bias_m), "common_bias_m must be finite", common_bias_m);
@@ -77,7 +91,8 @@ std::vector<std::string> SimulationOptions::Problems() const {
 
 struct Simulation::Impl {
   Impl(const SimulationOptions& options, const BoardSpec& board, const CameraModel& camera)
-      : script(Checked(options, board, camera), board, camera, room),
+      : room(RoomOf(Checked(options, board, camera), board)),
+        script(options, board, camera, room),
         lidar(options, board, room),
         camera_view(options, board, camera, room) {}
 

@@ -11,6 +11,7 @@
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/lidar/point_cloud.hpp"
+#include "core/simulation/scan_pattern.hpp"
 
 namespace voqcal {
 
@@ -23,9 +24,13 @@ struct SimulationOptions {
   double move_s = 0.5;  ///< How long it moves between stops.
   double min_distance_m = 1.5;
   double max_distance_m = 4.5;
-  // Lidar (VLP-16 pattern).
+  // Room.
+  bool has_clutter = false;         ///< People, tripods, doors and more furniture stand about.
+  double second_board_scale = 0.0;  ///< Size of a second board, of the true one's; 0: none.
+  // Lidar.
+  ScanOptions scan;
   double range_noise_m = 0.01;   ///< 1 sigma of one return.
-  double ring_bias_m = 0.008;    ///< 1 sigma of the constant offset of each ring.
+  double ring_bias_m = 0.008;    ///< 1 sigma of the constant offset of each ring or emitter.
   double common_bias_m = 0.0;    ///< Constant offset of every range.
   double dark_bias_m = 0.0075;   ///< Dark squares read longer by this, bright ones shorter.
   double intensity_noise = 1.0;  ///< 1 sigma of one return's intensity; a white surface reads 100.
@@ -59,8 +64,8 @@ class Simulation {
   /// True while the board rests at a stop.
   bool IsStill(double time_s) const;
 
-  /// One sweep that begins at `time_s`, without motion within the sweep. Rings count from the
-  /// lowest. Beams without a return are left out.
+  /// One sweep that begins at `time_s`, without motion within the sweep. Rings, where
+  /// the pattern has them, count from the lowest. Beams without a return are left out.
   PointCloud Sweep(double time_s) const;
 
   /// The image of an instant: 8-bit BGR, with lens distortion, blur and noise.

@@ -5,10 +5,12 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <gtest/gtest.h>
 
 #include "core/simulation/board_script.hpp"
+#include "core/simulation/clutter.hpp"
 #include "simulated_rig.hpp"
 
 namespace voqcal {
@@ -256,6 +258,44 @@ TEST(Sweep, DropsItsShareOfBeams) {
   const auto num = static_cast<double>(SimulatorOf(rig).Sweep(StopOf(rig, 0), 0).points.size());
   // Binomial: sqrt(28800 * 0.05 * 0.95) = 37; allow 4 of them.
   EXPECT_NEAR(num, kNumBeams * 0.95, 4 * 37);
+}
+
+// What the mask of rays and solids saves must not change what a beam sees: whole beams against
+// their own centre ray, in a room full of things.
+TEST(Sweep, OfEveryPatternMeetsBoardAndClutterExactly) {
+  for (const ScanPattern pattern : {ScanPattern::kSpinning64,
+                                    ScanPattern::kSpinning128,
+                                    ScanPattern::kRaster,
+                                    ScanPattern::kRosette}) {
+    test::SimulatedRig rig = test::CleanRig();
+    rig.options.scan.pattern = pattern;
+    const Room room(DrawClutter({}, rig.board, Room().Interior(), 3));
+    const Eigen::Isometry3d T_lidar_board = StopOf(rig, 0);
+    const LidarSimulator lidar(rig.options, rig.board, room);
+    const PointCloud cloud = lidar.Sweep(T_lidar_board, 300000);
+    const auto beams = BeamsOfSweep(rig.options.scan, 300000);
+    ASSERT_EQ(cloud.points.size(), beams.size());
+    EXPECT_EQ(cloud.has_ring, HasRings(pattern));
+    BoardHits hits;
+    std::set<int> rings;
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      const RoomHit room_hit = room.Cast(Eigen::Vector3d::Zero(), beams[i].direction);
+      const OnPlane place = MeetPlane(T_lidar_board, beams[i].direction);
+      const double range_m = cloud.points[i].position_m.cast<double>().norm();
+      ASSERT_EQ(cloud.points[i].time_s, beams[i].time_s);
+      if (InsideM(place, rig.board) > 0 && place.range_m < room_hit.range_m) {
+        ++hits.num_points;
+        rings.insert(beams[i].emitter);
+        ASSERT_NEAR(range_m, place.range_m, 2 * kFloatM) << ToString(pattern);
+      } else {
+        ASSERT_LT(range_m, room_hit.range_m + 2 * kFloatM) << ToString(pattern);  // or the stand
+      }
+    }
+    const BoardHits counted = lidar.CountBoardHits(T_lidar_board, 300000);
+    EXPECT_GT(counted.num_points, 100) << ToString(pattern);
+    EXPECT_EQ(counted.num_points, hits.num_points) << ToString(pattern);
+    EXPECT_EQ(counted.num_rings, HasRings(pattern) ? static_cast<int>(rings.size()) : 0);
+  }
 }
 
 }  // namespace

@@ -68,6 +68,31 @@ TEST(Simulation, ChangesWithTimeAndSeed) {
   EXPECT_NE(one.T_lidar_board(0.3).matrix(), other.T_lidar_board(0.3).matrix());
 }
 
+TEST(Simulation, SeesTheBoardAmongClutterWithEveryPattern) {
+  for (const ScanPattern pattern :
+       {ScanPattern::kVlp16, ScanPattern::kRaster, ScanPattern::kRosette}) {
+    test::SimulatedRig rig = FaultyRig(9);
+    rig.options.num_poses = 2;
+    rig.options.min_distance_m = 2.5;
+    rig.options.scan.pattern = pattern;
+    rig.options.has_clutter = true;
+    rig.options.second_board_scale = 1.3;
+    const Simulation simulation = SimulationOf(rig);
+    for (const double time_s : {0.5, 2.0}) {
+      const Eigen::Isometry3d T_board_lidar = simulation.T_lidar_board(time_s).inverse();
+      int num_on_board = 0;
+      for (const LidarPoint& point : simulation.Sweep(time_s).points) {
+        const Eigen::Vector3d point_board_m = T_board_lidar * point.position_m.cast<double>();
+        // Six sigma of noise, ring bias and shade, and a board of 0.61 x 0.85 m.
+        if (std::abs(point_board_m.z()) < 0.09 && point_board_m.head<2>().norm() < 0.3) {
+          ++num_on_board;
+        }
+      }
+      EXPECT_GT(num_on_board, 50) << ToString(pattern);
+    }
+  }
+}
+
 TEST(Simulation, RefusesBadOptions) {
   test::SimulatedRig rig = FaultyRig(1);
   rig.options.num_poses = 0;
@@ -111,6 +136,10 @@ TEST(SimulationOptionsProblems, NamesTheRuleAndTheValue) {
               ElementsAre("min_distance_m must be positive, is 0"));
   EXPECT_THAT(problems_after([](Options& o) { o.max_distance_m = 1; }),
               ElementsAre("max_distance_m must be at least min_distance_m, is 1"));
+  EXPECT_THAT(problems_after([](Options& o) { o.second_board_scale = 3; }),
+              ElementsAre("second_board_scale must be 0 or within 0.2 and 2, is 3"));
+  EXPECT_THAT(problems_after([](Options& o) { o.scan.dense_to_rad = -1; }),
+              ElementsAre(HasSubstr("dense_from_deg must be at most dense_to_deg")));
   EXPECT_THAT(problems_after([](Options& o) { o.range_noise_m = -0.01; }),
               ElementsAre("range_noise_m must not be negative, is -0.01"));
   EXPECT_THAT(problems_after([](Options& o) { o.ring_bias_m = -0.01; }),

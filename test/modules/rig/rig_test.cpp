@@ -88,6 +88,15 @@ TEST(LoadRig, ReadsABoxAndATransform) {
   EXPECT_TRUE(p.isApprox(Eigen::Vector3d(0.1, 1.2, 0.3), 1e-15)) << p.transpose();
 }
 
+TEST(LoadRig, ReadsTheScanPatternByName) {
+  const Rig rig = Load(Minimal() + "simulation: {pattern: raster, dense_to_deg: 9}\n");
+  EXPECT_EQ(rig.simulation.scan.pattern, ScanPattern::kRaster);
+  EXPECT_DOUBLE_EQ(rig.simulation.scan.dense_to_rad, 9 * M_PI / 180);
+  EXPECT_EQ(LoadError(Minimal() + "simulation: {pattern: spiral}\n"),
+            "rig.yaml:5: simulation.pattern must be vlp16, spinning_64, spinning_128, raster or "
+            "rosette, is \"spiral\"");
+}
+
 TEST(LoadRig, TakesASectionWhoseOptionsAreAllCommentedOut) {
   EXPECT_EQ(LoadError(Minimal() + "sample_collector:\n  # num_still_frames: 1\n"), "");
 }

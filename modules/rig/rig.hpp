@@ -39,6 +39,7 @@ struct Channels {
   std::string extrinsic_refined = "EXTRINSIC_REFINED";
   std::string calib_assessment = "CALIB_ASSESSMENT";
   std::string module_status = "MODULE_STATUS";
+  std::string camera_to_lidar = "CAMERA_TO_LIDAR";
 };
 
 /// Frames without a clock of their own (folders, simulation) count from here: 2020-01-01T00:00:00Z,

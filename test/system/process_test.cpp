@@ -35,8 +35,14 @@ const std::vector<std::string> kModules = {"lidar_driver",
                                            "extrinsic_estimator",
                                            "extrinsic_refiner",
                                            "assessor"};
-const std::vector<std::string> kTools = {
-    "calibrate", "check_rig", "command", "compare", "evaluate", "import_acfr"};
+const std::vector<std::string> kTools = {"calibrate",
+                                         "check_rig",
+                                         "command",
+                                         "compare",
+                                         "evaluate",
+                                         "export_extrinsic",
+                                         "import_acfr",
+                                         "publish_extrinsic"};
 
 // A test that waits for ever is ended by ctest.
 constexpr std::chrono::milliseconds kPatience(100);

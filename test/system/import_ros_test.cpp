@@ -1,0 +1,66 @@
+// A recording of ROS gives the very result of the log that it was made from.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rig/atomic_file.hpp"
+#include "rig/rig.hpp"
+#include "support/simulated_log.hpp"
+#include "support/temporary_folder.hpp"
+#include "system/system_test.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr char kToRecording[] = VOQCAL_SOURCE_DIR "/test/system/log_to_recording.mjs";
+
+bool HasNode() {
+  return std::filesystem::exists(VOQCAL_SOURCE_DIR "/tools/node/node_modules") &&
+         test::Run({"sh", "-c", "command -v node"}).status == 0;
+}
+
+class ImportRos : public ::testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (!HasNode()) GTEST_SKIP() << "without Node.js or its packages: tools/setup installs them";
+  }
+
+  std::string Path(const std::string& name) const { return folder_.path() / name; }
+
+  void MustRun(const std::vector<std::string>& args) const {
+    const test::Outcome outcome = test::Run(args);
+    ASSERT_EQ(outcome.status, 0) << args[0] << ": " << outcome.err;
+  }
+
+  std::string ResultOf(const std::string& log) const {
+    MustRun({test::Program("calibrate"), "--rig", rig_, "--log", log, "--out", log + ".out"});
+    return ReadWholeFile(log + ".out/extrinsic.yaml");
+  }
+
+  test::TemporaryFolder folder_;
+  std::string rig_ = folder_.Write(
+      "rig.yaml",
+      test::Replaced(test::ShortRigText(), "num_still_frames: 3", "num_still_frames: 1"));
+};
+
+TEST_P(ImportRos, GivesTheResultOfTheLog) {
+  test::WriteStopsLog(LoadRig(rig_), Path("raw.lcm"));
+  const std::string recording = Path(std::string("raw.") + GetParam());
+  MustRun({"node", kToRecording, Path("raw.lcm"), recording});
+  MustRun({test::Tool("import_ros"),
+           recording,
+           "--lidar-topic",
+           "/velodyne_points",
+           "--image-topic",
+           "/camera/image/compressed",
+           "--out",
+           Path("imported.lcm")});
+  EXPECT_EQ(ResultOf(Path("imported.lcm")), ResultOf(Path("raw.lcm")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ImportRos, ::testing::Values("bag", "mcap"), [](const auto& kind) {
+  return std::string(kind.param);
+});
+
+}  // namespace
+}  // namespace voqcal

@@ -1,0 +1,184 @@
+// What the tests import: recordings of both kinds of ROS, written here from LCM logs. The bag writer
+// follows the published format 2.0 of ROS 1 bags, the MCAP one is @mcap/core's own.
+
+import { writeFileSync } from "node:fs";
+import { open } from "node:fs/promises";
+import { createRequire } from "node:module";
+import { McapWriter } from "@mcap/core";
+import { FileHandleWritable } from "@mcap/nodejs";
+
+const require = createRequire(import.meta.url);
+const { ros1, ros2humble } = require("@foxglove/rosmsg-msgs-common");
+const { md5, stringify } = require("@foxglove/rosmsg");
+const { MessageWriter: Ros1Writer } = require("@foxglove/rosmsg-serialization");
+const { MessageWriter: Ros2Writer } = require("@foxglove/rosmsg2-serialization");
+
+/** A type and all that it is made of, the type itself first. */
+function definitionsOf(types, name) {
+  const found = new Map();
+  const add = (type) => {
+    if (found.has(type)) return;
+    const definition = types[type] ?? types[type.replace("/", "/msg/")];
+    found.set(type, definition);
+    for (const field of definition.definitions) if (field.isComplex) add(field.type);
+  };
+  add(name);
+  const [main, ...others] = found.values();
+  return [{ ...main, name: undefined }, ...others];
+}
+
+const time = (ns) => ({ sec: Number(ns / 1_000_000_000n), nsec: Number(ns % 1_000_000_000n) });
+
+// ---- LCM to sensor_msgs, the reverse of lib/ros_to_lcm.mjs -----------------------------------------
+
+const header = (message, frame_id) => ({ seq: 0, stamp: time(message.utime * 1000n), frame_id });
+
+export function cloudToRos(message) {
+  return { header: header(message, "velodyne"), ...message, is_bigendian: false, is_dense: true };
+}
+
+export function compressedToRos(message) {
+  return { header: header(message, "camera"), format: "jpeg", data: message.data };
+}
+
+export function rawToRos(message, encoding) {
+  const { width, height, row_stride: step, data } = message;
+  return { header: header(message, "camera"), width, height, step, encoding, is_bigendian: 0, data };
+}
+
+// ---- Messages: {topic, type, logTimeNs, message} in order of time ----------------------------------
+
+/** As `ros2 bag record` writes them. `options` go to McapWriter (chunkSize, compressChunk, ...). */
+export async function writeMcap(path, messages, options = {}) {
+  const file = await open(path, "w");
+  const writer = new McapWriter({ writable: new FileHandleWritable(file), ...options });
+  await writer.start({ profile: "ros2", library: "voqcal test" });
+  const channels = new Map();
+  for (const { topic, type, logTimeNs, message } of messages) {
+    if (!channels.has(topic)) {
+      const definitions = definitionsOf(ros2humble, type);
+      const schemaId = await writer.registerSchema({
+        name: type.replace("/", "/msg/"),
+        encoding: "ros2msg",
+        data: Buffer.from(stringify(definitions)),
+      });
+      const id = await writer.registerChannel({
+        topic,
+        schemaId,
+        messageEncoding: "cdr",
+        metadata: new Map(),
+      });
+      channels.set(topic, { id, writer: new Ros2Writer(definitions) });
+    }
+    const channel = channels.get(topic);
+    await writer.addMessage({
+      channelId: channel.id,
+      sequence: 0,
+      logTime: logTimeNs,
+      publishTime: logTimeNs,
+      data: channel.writer.writeMessage(message),
+    });
+  }
+  await writer.end();
+  await file.close();
+}
+
+/** A bag of one chunk, as rosbag writes it: bag header, chunk, its index, connections, chunk info. */
+export function writeBag(path, messages) {
+  const connections = new Map();
+  const chunk = [];
+  let chunkBytes = 0;
+  const append = (record) => {
+    chunk.push(record);
+    chunkBytes += record.length;
+  };
+  for (const { topic, type, logTimeNs, message } of messages) {
+    if (!connections.has(topic)) {
+      const definitions = definitionsOf(ros1, type);
+      const id = connections.size;
+      const connection = { id, record: connectionRecord(id, topic, type, definitions), index: [] };
+      connections.set(topic, { ...connection, writer: new Ros1Writer(definitions) });
+      append(connection.record);
+    }
+    const { id, index, writer } = connections.get(topic);
+    index.push({ logTimeNs, offset: chunkBytes });
+    append(record({ op: u8(2), conn: u32(id), time: bagTime(logTimeNs) }, writer.writeMessage(message)));
+  }
+  writeFileSync(path, Buffer.concat(bagRecords(chunk, chunkBytes, [...connections.values()], messages)));
+}
+
+function bagRecords(chunk, chunkBytes, connections, messages) {
+  const magic = Buffer.from("#ROSBAG V2.0\n");
+  const chunkPosition = magic.length + 4096;
+  const chunkRecord = record(
+    { op: u8(5), compression: Buffer.from("none"), size: u32(chunkBytes) },
+    Buffer.concat(chunk),
+  );
+  const indices = connections.map(({ id, index }) =>
+    record(
+      { op: u8(4), ver: u32(1), conn: u32(id), count: u32(index.length) },
+      Buffer.concat(index.flatMap(({ logTimeNs, offset }) => [bagTime(logTimeNs), u32(offset)])),
+    ),
+  );
+  const numBytes = [chunkRecord, ...indices].reduce((sum, part) => sum + part.length, 0);
+  const counts = connections.flatMap(({ id, index }) => [u32(id), u32(index.length)]);
+  const info = record(
+    {
+      op: u8(6),
+      ver: u32(1),
+      chunk_pos: u64(chunkPosition),
+      start_time: bagTime(messages[0]?.logTimeNs ?? 0n),
+      end_time: bagTime(messages.at(-1)?.logTimeNs ?? 0n),
+      count: u32(connections.length),
+    },
+    Buffer.concat(counts),
+  );
+  const bagHeader = paddedHeader({
+    op: u8(3),
+    index_pos: u64(chunkPosition + numBytes),
+    conn_count: u32(connections.length),
+    chunk_count: u32(1),
+  });
+  return [magic, bagHeader, chunkRecord, ...indices, ...connections.map((c) => c.record), info];
+}
+
+function connectionRecord(id, topic, type, definitions) {
+  const text = stringify(definitions);
+  const data = fields({
+    topic: Buffer.from(topic),
+    type: Buffer.from(type),
+    md5sum: Buffer.from(md5(definitions)),
+    message_definition: Buffer.from(text),
+  });
+  return record({ op: u8(7), conn: u32(id), topic: Buffer.from(topic) }, data);
+}
+
+/** The bag header is filled up to 4096 bytes with spaces. */
+function paddedHeader(values) {
+  const head = fields(values);
+  return record(values, Buffer.alloc(4096 - 8 - head.length, " "));
+}
+
+function record(values, data) {
+  const head = fields(values);
+  return Buffer.concat([u32(head.length), head, u32(data.length), data]);
+}
+
+function fields(values) {
+  return Buffer.concat(
+    Object.entries(values).flatMap(([name, value]) => {
+      const key = Buffer.from(`${name}=`);
+      return [u32(key.length + value.length), key, value];
+    }),
+  );
+}
+
+function little(numBytes, write) {
+  const buffer = Buffer.alloc(numBytes);
+  write(buffer);
+  return buffer;
+}
+const u8 = (value) => Buffer.from([value]);
+const u32 = (value) => little(4, (buffer) => buffer.writeUInt32LE(value));
+const u64 = (value) => little(8, (buffer) => buffer.writeBigUInt64LE(BigInt(value)));
+const bagTime = (ns) => Buffer.concat([u32(time(ns).sec), u32(time(ns).nsec)]);

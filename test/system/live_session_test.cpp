@@ -40,11 +40,11 @@ class LiveSession : public ::testing::Test {
 
 TEST_F(LiveSession, RecordingAndReplayGiveTheSameBytes) {
   const std::string rig = folder_.Write("rig.yaml", test::ShortRigText());
-  ASSERT_NO_FATAL_FAILURE(RunRig(rig, {"--session", Path("live"), "--record", Path("raw.lcm")}));
+  ASSERT_NO_FATAL_FAILURE(RunRig(rig, {"--session", Path("live"), "--record"}));
   const std::string live = Extrinsic("live");
   EXPECT_EQ(YAML::Load(live)["samples"]["used"].size(), 8u);  // one of each stop
   for (const char* name : {"offline_1", "offline_2"}) {
-    ASSERT_NO_FATAL_FAILURE(Calibrate(rig, "raw.lcm", name));
+    ASSERT_NO_FATAL_FAILURE(Calibrate(rig, "live/raw.lcm", name));
     EXPECT_EQ(Extrinsic(name), live) << name;
   }
   for (const char* name : {"live", "offline_1"}) {
@@ -52,7 +52,8 @@ TEST_F(LiveSession, RecordingAndReplayGiveTheSameBytes) {
     ASSERT_NO_FATAL_FAILURE(Calibrate(rig, std::string(name) + "/samples.lcm", again));
     EXPECT_EQ(Extrinsic(again), live) << name;
   }
-  ASSERT_NO_FATAL_FAILURE(RunRig(rig, {"--session", Path("replay"), "--replay", Path("raw.lcm")}));
+  ASSERT_NO_FATAL_FAILURE(
+      RunRig(rig, {"--session", Path("replay"), "--replay", Path("live/raw.lcm")}));
   EXPECT_EQ(Extrinsic("replay"), live);
   // The recording also holds what the live modules said: a replay must not say it a second time.
   EXPECT_EQ(CollectorTotals("replay"), CollectorTotals("live"));

@@ -55,15 +55,19 @@ int main(int argc, char** argv) {
   std::filesystem::path path;
   bool is_url_only = false;
   bool is_channels_only = false;
+  bool is_name_only = false;
   app.add_option("rig", path, "The rig file (YAML)")->required();
+  app.add_flag("--name", is_name_only, "Print just the rig's name, for scripts");
   app.add_flag("--lcm-url", is_url_only, "Print just the LCM URL, for scripts");
   app.add_flag(
       "--input-channels",
       is_channels_only,
       "Print just the channels of sensors and operator, as a pattern for lcm-logplayer -e");
-  return voqcal::RunTool(&app, argc, argv, [&path, &is_url_only, &is_channels_only] {
+  return voqcal::RunTool(&app, argc, argv, [&] {
     const voqcal::Rig rig = voqcal::LoadRig(path);
-    if (is_url_only) {
+    if (is_name_only) {
+      std::puts(rig.name.c_str());
+    } else if (is_url_only) {
       std::puts(rig.lcm_url.c_str());
     } else if (is_channels_only) {
       voqcal::PrintInputChannels(rig.channels);

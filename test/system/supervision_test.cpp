@@ -1,0 +1,105 @@
+// tools/up, status and down; and what a killed module changes in the end: nothing.
+
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rig/atomic_file.hpp"
+#include "support/temporary_folder.hpp"
+#include "system/system_test.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Supervision : public ::testing::Test {
+ protected:
+  ~Supervision() override { Down(); }
+
+  test::Outcome Up(const std::vector<std::string>& flags) const {
+    std::vector<std::string> args = {test::Tool("up"), rig_, "--session", session_};
+    args.insert(args.end(), flags.begin(), flags.end());
+    return test::Run(args);
+  }
+  test::Outcome Down() const { return test::Run({test::Tool("down"), "--session", session_}); }
+  test::Outcome Status(const std::string& modules) const {
+    return test::Run({test::Tool("status"), rig_, "--once", "--modules", modules});
+  }
+  pid_t PidOf(const std::string& module) const {
+    const std::string config = session_ + "/supervisor.conf";
+    return std::stoi(test::Run({"supervisorctl", "-c", config, "pid", module}).out);
+  }
+
+  test::TemporaryFolder folder_;
+  std::string rig_ = folder_.Write("rig.yaml", test::ShortRigText());
+  std::string session_ = folder_.path() / "a session";
+};
+
+TEST_F(Supervision, UpRunsTheModulesUntilDown) {
+  const test::Outcome up = Up({"--only", "voq_selector,assessor", "--record"});
+  ASSERT_EQ(up.status, 0) << up.err;
+  EXPECT_THAT(up.out, HasSubstr("running: 3 programs"));
+  EXPECT_EQ(ReadWholeFile(session_ + "/rig.yaml"), test::ShortRigText());
+
+  const test::Outcome good = Status("voq_selector,assessor");
+  EXPECT_EQ(good.status, 0) << good.out << good.err;
+  EXPECT_THAT(good.out, AllOf(HasSubstr("\nsilent  nobody\n"), HasSubstr("\nlost    nothing\n")));
+  const test::Outcome bad = Status("voq_selector,camera_driver");
+  EXPECT_EQ(bad.status, 1);
+  EXPECT_THAT(bad.out, HasSubstr("\nsilent  camera_driver\n"));
+
+  const test::Outcome again = Up({});
+  EXPECT_EQ(again.status, 1);
+  EXPECT_THAT(again.err, HasSubstr("running already"));
+
+  const test::Outcome down = Down();
+  EXPECT_EQ(down.status, 0) << down.err;
+  EXPECT_THAT(ReadWholeFile(session_ + "/assessor.txt"), HasSubstr("assessor: info"));
+  EXPECT_GT(std::filesystem::file_size(session_ + "/raw.lcm"), 0u);
+  EXPECT_EQ(Down().status, 1);  // nothing is left to stop
+}
+
+TEST_F(Supervision, AKilledModuleIsStartedAgain) {
+  ASSERT_EQ(Up({"--only", "voq_selector"}).status, 0);
+  const pid_t before = PidOf("voq_selector");
+  kill(before, SIGKILL);
+  const test::Outcome status = Status("voq_selector");
+  EXPECT_EQ(status.status, 0) << status.out << status.err;
+  EXPECT_NE(PidOf("voq_selector"), before);
+}
+
+TEST_F(Supervision, UpSaysWhyAModuleDoesNotStart) {
+  session_ = folder_.path() / "session";
+  std::filesystem::create_directories(session_ + "/samples.lcm");  // a folder in the way
+  const test::Outcome up = Up({"--only", "sample_collector"});
+  EXPECT_EQ(up.status, 1);
+  EXPECT_THAT(up.err, AllOf(HasSubstr("sample_collector did not start"), HasSubstr("samples.lcm")));
+  EXPECT_EQ(Down().status, 1);  // nothing is left running
+}
+
+TEST_F(Supervision, UpRefusesWhatItDoesNotKnow) {
+  EXPECT_EQ(Up({"--only", "no_such_module"}).status, 2);
+  EXPECT_EQ(Up({"--no-such-flag"}).status, 2);
+  rig_ = folder_.Write("rig.yaml", "rig: [\n");
+  EXPECT_EQ(Up({}).status, 1);
+  EXPECT_THAT(test::NamesIn(folder_.path()), Not(::testing::Contains("a session")));
+}
+
+// The full number of 50 kills: test/system/kill_test.py by hand.
+TEST_F(Supervision, KilledModulesChangeNothingInTheEnd) {
+  const test::Outcome outcome =
+      test::Run({std::string(VOQCAL_SOURCE_DIR) + "/test/system/kill_test.py",
+                 rig_,
+                 "--out",
+                 folder_.path() / "kills",
+                 "--kills",
+                 "3"});
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
+}  // namespace
+}  // namespace voqcal

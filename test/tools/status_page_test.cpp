@@ -1,0 +1,152 @@
+#include "rig_status/status_page.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace voqcal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Health = StatusPage::Health;
+
+StatusPage::Time At(double time_s) {
+  return StatusPage::Time(std::chrono::duration_cast<StatusPage::Time::duration>(
+      std::chrono::duration<double>(time_s)));
+}
+
+module_status_t Status(const std::string& module, std::int64_t seq, const std::string& state) {
+  module_status_t status{};
+  status.module = module;
+  status.seq = seq;
+  status.state = state;
+  return status;
+}
+
+channel_status_t Channel(const std::string& name,
+                         std::int64_t num_received,
+                         std::int64_t num_lost) {
+  channel_status_t channel{};
+  channel.channel = name;
+  channel.num_received = num_received;
+  channel.num_lost = num_lost;
+  channel.rate_hz = 10;
+  return channel;
+}
+
+void AddChannel(const channel_status_t& channel, module_status_t* status) {
+  status->channels.push_back(channel);
+  status->num_channels = static_cast<std::int32_t>(status->channels.size());
+}
+
+void AddCounter(const std::string& name, std::int64_t count, module_status_t* status) {
+  counter_t counter{};
+  counter.name = name;
+  counter.count = count;
+  status->counters.push_back(counter);
+  status->num_counters = static_cast<std::int32_t>(status->counters.size());
+}
+
+TEST(StatusPage, NamesWhoWasNeverHeard) {
+  StatusPage page({"lidar_driver", "assessor"});
+  page.Take(Status("assessor", 1, "running"), At(0));
+  EXPECT_FALSE(page.IsAllGood(At(0)));
+  EXPECT_THAT(page.Text(At(0)),
+              AllOf(HasSubstr("lidar_driver           not heard\n"),
+                    HasSubstr("\nsilent  lidar_driver\n"),
+                    HasSubstr("\nlost    nothing\n")));
+}
+
+TEST(StatusPage, IsSilentAfterThreeSecondsWithoutAHeartbeat) {
+  StatusPage page({"assessor"});
+  page.Take(Status("assessor", 1, "running"), At(10));
+  EXPECT_EQ(page.HealthOf("assessor", At(13)), Health::kGood);
+  EXPECT_EQ(page.HealthOf("assessor", At(13.1)), Health::kSilent);
+  EXPECT_THAT(page.Text(At(15)), HasSubstr("SILENT for 5 s"));
+  page.Take(Status("assessor", 2, "running"), At(16));
+  EXPECT_EQ(page.HealthOf("assessor", At(16)), Health::kGood);
+}
+
+TEST(StatusPage, AModuleThatSaidThatItHasEndedIsNotSilent) {
+  StatusPage page({"lidar_driver", "camera_driver"});
+  page.Take(Status("lidar_driver", 9, "done"), At(0));
+  page.Take(Status("camera_driver", 9, "stopped"), At(0));
+  EXPECT_TRUE(page.IsAllGood(At(100)));
+  EXPECT_THAT(page.Text(At(100)), HasSubstr("\nsilent  nobody\n"));
+}
+
+TEST(StatusPage, AFailedModuleIsNotGood) {
+  StatusPage page({"assessor"});
+  page.Take(Status("assessor", 3, "failed: disk full"), At(0));
+  EXPECT_EQ(page.HealthOf("assessor", At(0)), Health::kFailed);
+  EXPECT_FALSE(page.IsAllGood(At(0)));
+  EXPECT_THAT(page.Text(At(0)), HasSubstr("failed: disk full"));
+}
+
+TEST(StatusPage, TellsWhoLostHowManyOfWhat) {
+  StatusPage page({"lidar_board_detector"});
+  module_status_t status = Status("lidar_board_detector", 1, "running");
+  AddChannel(Channel("LIDAR_POINTS", 95, 5), &status);
+  page.Take(status, At(0));
+  EXPECT_THAT(page.Text(At(0)),
+              AllOf(ContainsRegex("LIDAR_POINTS +10.0 Hz +95 received  5 LOST"),
+                    HasSubstr("\nlost    lidar_board_detector: 5 of 100 LIDAR_POINTS\n")));
+}
+
+TEST(StatusPage, RateOfSendingIsThatBetweenTwoHeartbeats) {
+  StatusPage page({"lidar_driver"});
+  module_status_t status = Status("lidar_driver", 1, "running");
+  status.num_published = 100;
+  page.Take(status, At(0));
+  status.seq = 2;
+  status.num_published = 125;
+  page.Take(status, At(2));
+  EXPECT_THAT(page.Text(At(2)), ContainsRegex("sends +12.5 Hz +125 sent"));
+}
+
+TEST(StatusPage, ANumberingThatBeginsAnewIsARestart) {
+  StatusPage page({"assessor"});
+  for (const std::int64_t seq : {7, 8, 1, 2, 1}) {
+    page.Take(Status("assessor", seq, "running"), At(0));
+  }
+  EXPECT_THAT(page.Text(At(0)), HasSubstr("assessor               running  restarted 2 times\n"));
+}
+
+TEST(StatusPage, ShowsTheMostFrequentResultsAndMissesFirst) {
+  StatusPage page({"assessor"});
+  module_status_t status = Status("assessor", 1, "running");
+  AddCounter("a", 1, &status);
+  AddCounter("b", 30, &status);
+  AddCounter("c", 2, &status);
+  AddCounter("d", 4, &status);
+  AddCounter("e", 5, &status);
+  page.Take(status, At(0));
+  EXPECT_THAT(page.Text(At(0)), HasSubstr("    counts 30 b, 5 e, 4 d, 2 c, ...\n"));
+}
+
+TEST(StatusPage, KeepsTheLastFiveEvents) {
+  StatusPage page({});
+  for (int i = 1; i <= 6; ++i) {
+    event_t event{};
+    event.kind = i == 6 ? "rejected" : "accepted";
+    event.sample_id = i == 6 ? 0 : i;
+    event.reason = i == 6 ? "board is moving" : "";
+    page.Take(event);
+  }
+  EXPECT_THAT(page.Text(At(0)),
+              AllOf(HasSubstr("    accepted sample 2\n"),
+                    HasSubstr("    rejected: board is moving\n"),
+                    Not(HasSubstr("sample 1\n"))));
+}
+
+TEST(StatusPage, ListsModulesThatNobodyAskedFor) {
+  StatusPage page({"assessor"});
+  page.Take(Status("assessor", 1, "running"), At(0));
+  page.Take(Status("stranger", 1, "running"), At(0));
+  EXPECT_THAT(page.Text(At(100)), AllOf(HasSubstr("stranger "), HasSubstr("\nsilent  assessor\n")));
+}
+
+}  // namespace
+}  // namespace voqcal

@@ -1,0 +1,31 @@
+# Sourced by the scripts that run a rig: where things are, and what the modules are called.
+# Works in a source tree (programs in build/release/bin) and in an installed one (bin).
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+bin=${VOQCAL_BIN:-$root/bin}
+[ -d "$bin" ] || bin=$root/build/release/bin
+
+drivers=(lidar_driver camera_driver)
+# In the order of the flow; every one of them reads what a driver, or one before it, says.
+readers=(lidar_board_detector camera_board_detector sample_collector voq_selector
+  extrinsic_estimator extrinsic_refiner assessor)
+
+fail() {  # MESSAGE [STATUS]
+  echo "$(basename "$0"): $1" >&2
+  exit "${2:-1}"
+}
+
+# The session's folder, absolute: DIR, or logs/NAME-OF-THE-RIG below the working directory, or, without
+# either, the one session that runs below logs/.
+session_folder() {  # DIR RIG
+  local dir=$1 rig=$2 running
+  if [ -z "$dir" ] && [ -n "$rig" ]; then
+    dir=logs/$("$bin/check_rig" "$rig" --name) || exit 1
+  elif [ -z "$dir" ]; then
+    shopt -s nullglob
+    running=(logs/*/supervisor.sock)
+    [ ${#running[@]} -eq 1 ] || fail "${#running[@]} sessions run below logs/: name the rig or --session"
+    dir=$(dirname "${running[0]}")
+  fi
+  realpath --canonicalize-missing -- "$dir"
+}

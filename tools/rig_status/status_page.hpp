@@ -1,0 +1,60 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "voqcal/event_t.hpp"
+#include "voqcal/module_status_t.hpp"
+
+namespace voqcal {
+
+/// Every module of the flow, in its order.
+std::vector<std::string> AllModuleNames();
+
+/// Collects the heartbeats of a rig's modules and writes them as one terminal page. No bus and no
+/// clock: the caller tells the time.
+class StatusPage {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// @param modules  those that should be heard, in the page's order. Others are listed too.
+  explicit StatusPage(std::vector<std::string> modules);
+
+  void Take(const module_status_t& status, Time now);
+  void Take(const event_t& event);
+
+  /// How a module is: silent after three seconds without a heartbeat, unless its last one said that
+  /// it has ended.
+  enum class Health { kGood, kSilent, kFailed };
+  Health HealthOf(const std::string& module, Time now) const;
+
+  /// True if each module that should be heard is good.
+  bool IsAllGood(Time now) const;
+
+  /// A line or more for each module (state, rates, losses, most frequent results and misses), the
+  /// last events, then one line each for who is silent and for what was lost.
+  std::string Text(Time now) const;
+
+ private:
+  struct Heard {
+    module_status_t status;
+    Time at;
+    double published_hz = 0;  ///< Between the last two heartbeats.
+    int num_restarts = 0;     ///< Times that the numbering began anew.
+  };
+
+  std::string ModuleText(const std::string& module, Time now) const;
+  std::string SilentText(Time now) const;
+  std::string LostText() const;
+
+  std::vector<std::string> modules_;
+  std::map<std::string, Heard> heard_;
+  std::deque<event_t> events_;  ///< The newest last.
+};
+
+}  // namespace voqcal

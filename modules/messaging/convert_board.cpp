@@ -162,6 +162,7 @@ sample_t ToMessage(const BoardSample& sample) {
   message.num_frames = sample.num_frames;
   message.lidar = ToMessage(sample.lidar);
   message.camera = ToMessage(sample.camera);
+  message.camera.utime = sample.camera_utime;
   return message;
 }
 
@@ -172,6 +173,7 @@ BoardSample FromMessage(const sample_t& message) {
   sample.num_frames = message.num_frames;
   sample.lidar = FromMessage(message.lidar);
   sample.camera = FromMessage(message.camera);
+  sample.camera_utime = message.camera.utime;
   return sample;
 }
 

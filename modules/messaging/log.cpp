@@ -36,18 +36,6 @@ void AppendBigEndian(std::uint64_t value, int num_bytes, std::vector<std::uint8_
   }
 }
 
-std::vector<std::uint8_t> Encode(const LogEvent& event) {
-  std::vector<std::uint8_t> bytes(kSyncWord.begin(), kSyncWord.end());
-  bytes.reserve(kHeaderBytes + event.channel.size() + event.bytes.size());
-  AppendBigEndian(static_cast<std::uint64_t>(event.number), 8, &bytes);
-  AppendBigEndian(static_cast<std::uint64_t>(event.utime), 8, &bytes);
-  AppendBigEndian(event.channel.size(), 4, &bytes);
-  AppendBigEndian(event.bytes.size(), 4, &bytes);
-  bytes.insert(bytes.end(), event.channel.begin(), event.channel.end());
-  bytes.insert(bytes.end(), event.bytes.begin(), event.bytes.end());
-  return bytes;
-}
-
 std::string At(const std::filesystem::path& path, std::int64_t offset) {
   return path.string() + ": byte " + std::to_string(offset) + ": ";
 }
@@ -62,6 +50,18 @@ void SyncFolderOf(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> EncodeLogEvent(const LogEvent& event) {
+  std::vector<std::uint8_t> bytes(kSyncWord.begin(), kSyncWord.end());
+  bytes.reserve(kHeaderBytes + event.channel.size() + event.bytes.size());
+  AppendBigEndian(static_cast<std::uint64_t>(event.number), 8, &bytes);
+  AppendBigEndian(static_cast<std::uint64_t>(event.utime), 8, &bytes);
+  AppendBigEndian(event.channel.size(), 4, &bytes);
+  AppendBigEndian(event.bytes.size(), 4, &bytes);
+  bytes.insert(bytes.end(), event.channel.begin(), event.channel.end());
+  bytes.insert(bytes.end(), event.bytes.begin(), event.bytes.end());
+  return bytes;
+}
 
 LogReader::LogReader(const std::filesystem::path& path) : path_(path) {
   std::error_code error;
@@ -139,7 +139,7 @@ void LogWriter::CutHalfWrittenEvent() {
     }
   } catch (const TruncatedLogError& error) {
     spdlog::warn("{} (cut off there, to go on)", error.what());
-    if (ftruncate(descriptor_, error.offset()) != 0) Fail("cut");
+    CutAt(error.offset());
   }
   num_bytes_ = reader.offset();
 }
@@ -149,7 +149,7 @@ void LogWriter::Write(const LogEvent& event) {
     throw std::invalid_argument("LCM log: channel '" + event.channel +
                                 "' must have 1 to 63 characters");
   }
-  const std::vector<std::uint8_t> bytes = Encode(event);
+  const std::vector<std::uint8_t> bytes = EncodeLogEvent(event);
   std::size_t num_written = 0;
   while (num_written < bytes.size()) {
     const ssize_t num_now =
@@ -164,6 +164,11 @@ void LogWriter::Write(const LogEvent& event) {
     num_written += static_cast<std::size_t>(num_now);
   }
   num_bytes_ += static_cast<std::int64_t>(bytes.size());
+}
+
+void LogWriter::CutAt(std::int64_t offset) {
+  if (ftruncate(descriptor_, offset) != 0) Fail("cut");
+  num_bytes_ = offset;
 }
 
 void LogWriter::Flush() {

@@ -18,6 +18,9 @@ struct LogEvent {
   std::vector<std::uint8_t> bytes;  ///< The encoded message; DecodeMessage takes them.
 };
 
+/// The event's bytes in a log.
+std::vector<std::uint8_t> EncodeLogEvent(const LogEvent& event);
+
 /// The file ends within an event.
 class TruncatedLogError : public std::runtime_error {
  public:
@@ -71,6 +74,10 @@ class LogWriter {
   /// Appends the event whole, or takes back what was written of it and throws.
   /// @throws std::runtime_error naming file and cause (a full disk, ...).
   void Write(const LogEvent& event);
+
+  /// Takes back everything from `offset` on, which is where an event begins, or the end.
+  /// @throws std::runtime_error naming file and cause.
+  void CutAt(std::int64_t offset);
 
   /// Returns once all events are on the disk.
   /// @throws std::runtime_error naming file and cause.

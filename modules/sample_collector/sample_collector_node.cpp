@@ -7,9 +7,17 @@
 
 #include "messaging/convert_board.hpp"
 #include "voqcal/event_t.hpp"
+#include "voqcal/image_t.hpp"
+#include "voqcal/pointcloud2_t.hpp"
 #include "voqcal/samples_t.hpp"
 
 namespace voqcal {
+namespace {
+
+// Of each sensor: some seconds of JPEG or of a 128-beam lidar, 36 raw images of 1920 x 1208.
+constexpr std::size_t kMaxBufferBytes = 256U << 20U;
+
+}  // namespace
 
 SampleCollectorNode::SampleCollectorNode(const Rig& rig,
                                          Bus* bus,
@@ -17,9 +25,15 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
     : channels_(rig.channels),
       bus_(*bus),
       picker_(rig.board, rig.sample_collector),
+      sweeps_(kMaxBufferBytes),
+      images_(kMaxBufferBytes),
       session_(session_folder),
       log_sha256_(session_.Sha256()) {
   picker_.SetKnown(session_.samples());
+  bus_.Subscribe<pointcloud2_t>(
+      channels_.lidar_points, Queue::kEvery, [this](const pointcloud2_t& m) { Keep(m, &sweeps_); });
+  bus_.Subscribe<image_t>(
+      channels_.camera_image, Queue::kEvery, [this](const image_t& m) { Keep(m, &images_); });
   bus_.Subscribe<lidar_board_t>(
       channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& m) { OnBoard(m); });
   bus_.Subscribe<camera_board_t>(
@@ -49,13 +63,21 @@ void SampleCollectorNode::Republish() {
   PublishSamples();
 }
 
-void SampleCollectorNode::Accept(const BoardSample& sample) {
+void SampleCollectorNode::Accept(const BoardSample& sample,
+                                 const SampleScene& scene,
+                                 const std::string& remark) {
   is_finished_ = false;
-  const std::int64_t id = session_.Accept(sample);
+  const std::int64_t id = session_.Accept(sample, scene);
   log_sha256_ = session_.Sha256();
   Count("accepted");
-  Announce(sample.utime, "accepted", id, "");
+  Announce(sample.utime, "accepted", id, remark);
   PublishSamples();
+}
+
+void SampleCollectorNode::AcceptWithScene(const BoardSample& sample) {
+  const SampleScene scene = {sweeps_.Find(sample.utime), images_.Find(sample.camera_utime)};
+  if (!scene.IsWhole()) Count("accepted without its scene");
+  Accept(sample, scene, scene.IsWhole() ? "" : "its sweep or image did not arrive: no scene");
 }
 
 void SampleCollectorNode::Finish() {
@@ -64,6 +86,14 @@ void SampleCollectorNode::Finish() {
   is_finished_ = true;
   Announce(samples().empty() ? 0 : samples().back().utime, "finished", 0, "");
   PublishSamples();
+}
+
+template <typename Message>
+void SampleCollectorNode::Keep(const Message& message, FrameBuffer* frames) {
+  SensorFrame frame{message.utime, {}};
+  frame.bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(frame.bytes.data(), 0, static_cast<int>(frame.bytes.size()));
+  frames->Add(std::move(frame));
 }
 
 // A message that contradicts itself is a frame without a board, and costs that frame only.
@@ -117,7 +147,7 @@ void SampleCollectorNode::Discard(const command_t& message) {
 void SampleCollectorNode::Decide(const std::vector<PickerDecision>& decisions) {
   for (const PickerDecision& decision : decisions) {
     if (decision.accepted) {
-      Accept(*decision.accepted);
+      AcceptWithScene(*decision.accepted);
     } else {
       Count(decision.reason);
       const std::string& detail = decision.detail;

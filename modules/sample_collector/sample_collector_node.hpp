@@ -17,8 +17,8 @@
 namespace voqcal {
 
 /// LIDAR_BOARD, CAMERA_BOARD and CALIB_COMMAND in, CALIB_SAMPLES and CALIB_EVENT out. Accepted
-/// samples are on the disk before they are announced; a node made again on the same session goes
-/// on.
+/// samples are on the disk before they are announced, each with its scene: the LIDAR_POINTS and
+/// CAMERA_IMAGE of its first frame. A node made again on the same session goes on.
 class SampleCollectorNode : public Module {
  public:
   /// @param bus  borrowed; must outlive the node.
@@ -30,8 +30,8 @@ class SampleCollectorNode : public Module {
   bool Step() override;
   void Republish() override;
 
-  /// Takes a sample that another program extracted.
-  void Accept(const BoardSample& sample);
+  /// Takes a sample that another program extracted; it has no scene.
+  void Accept(const BoardSample& sample) { Accept(sample, {}, ""); }
 
   /// No more frames will come: judges what waits and says so in CALIB_SAMPLES. The command "finish"
   /// does the same once no frame has come for a second, since detectors may still be at work.
@@ -40,10 +40,15 @@ class SampleCollectorNode : public Module {
   const std::vector<BoardSample>& samples() const { return session_.samples(); }
 
  private:
+  template <typename Message>
+  void Keep(const Message& message, FrameBuffer* frames);
   template <typename BoardMessage>
   void OnBoard(const BoardMessage& message);
   void OnCommand(const command_t& message);
   void Discard(const command_t& message);
+  void Accept(const BoardSample& sample, const SampleScene& scene, const std::string& remark);
+  /// With what was seen at its first frame, if both frames are at hand.
+  void AcceptWithScene(const BoardSample& sample);
   void Decide(const std::vector<PickerDecision>& decisions);
   void Announce(std::int64_t utime,
                 const std::string& kind,
@@ -54,6 +59,8 @@ class SampleCollectorNode : public Module {
   Channels channels_;
   Bus& bus_;
   SamplePicker picker_;
+  FrameBuffer sweeps_;
+  FrameBuffer images_;
   SessionLog session_;
   std::string log_sha256_;
   std::int64_t event_seq_ = 0;

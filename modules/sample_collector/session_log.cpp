@@ -8,7 +8,6 @@
 
 #include "messaging/bus.hpp"
 #include "messaging/convert_board.hpp"
-#include "rig/sha256.hpp"
 #include "voqcal/event_t.hpp"
 #include "voqcal/sample_t.hpp"
 
@@ -47,18 +46,22 @@ std::filesystem::path MakeFolder(const std::filesystem::path& folder) {
 
 SessionLog::SessionLog(const std::filesystem::path& folder)
     : path_(MakeFolder(folder)), writer_(path_) {
-  // The writer has cut off what a crash left half-written: what is there is whole.
-  LogReader reader(path_);
   try {
-    while (const std::optional<LogEvent> event = reader.Next()) Apply(*event);
+    ReadAgain();
   } catch (const std::exception& error) {
     throw std::runtime_error(path_.string() + ": is no log of samples: " + error.what());
   }
 }
 
-std::int64_t SessionLog::Accept(BoardSample sample) {
+std::int64_t SessionLog::Accept(BoardSample sample, const SampleScene& scene) {
   sample.id = std::max(sample.id, next_id_);
-  Append(kSampleChannel, sample.utime, Encode(ToMessage(sample)));
+  Change change;
+  if (scene.IsWhole()) {
+    change.push_back(Event(kSceneSweepChannel, scene.sweep->utime, scene.sweep->bytes));
+    change.push_back(Event(kSceneImageChannel, scene.image->utime, scene.image->bytes));
+  }
+  change.push_back(Event(kSampleChannel, sample.utime, Encode(ToMessage(sample))));
+  Append(change);
   return sample.id;
 }
 
@@ -72,7 +75,7 @@ std::optional<std::int64_t> SessionLog::Discard(std::int64_t id) {
   event.seq = revision_;
   event.kind = "discarded";
   event.sample_id = id;
-  Append(kEventChannel, event.utime, Encode(event));
+  Append({Event(kEventChannel, event.utime, Encode(event))});
   return id;
 }
 
@@ -81,34 +84,59 @@ void SessionLog::Reset() {
   event.utime = samples_.empty() ? 0 : samples_.back().utime;
   event.seq = revision_;
   event.kind = "reset";
-  Append(kEventChannel, event.utime, Encode(event));
+  Append({Event(kEventChannel, event.utime, Encode(event))});
 }
 
-std::string SessionLog::Sha256() const { return Sha256OfFile(path_); }
+LogEvent SessionLog::Event(const char* channel,
+                           std::int64_t utime,
+                           std::vector<std::uint8_t> bytes) const {
+  return {revision_, utime, channel, std::move(bytes)};
+}
 
-void SessionLog::Append(const char* channel, std::int64_t utime, std::vector<std::uint8_t> bytes) {
-  const LogEvent event{revision_, utime, channel, std::move(bytes)};
-  writer_.Write(event);
+// The writer has cut off an event that a crash left half-written; a scene whose sample the crash
+// took is cut off here.
+void SessionLog::ReadAgain() {
+  LogReader reader(path_);
+  std::int64_t end = 0;  // of the last change
+  Change change;
+  while (std::optional<LogEvent> event = reader.Next()) {
+    const bool is_scene =
+        event->channel == kSceneSweepChannel || event->channel == kSceneImageChannel;
+    change.push_back(*std::move(event));
+    if (is_scene) continue;
+    Apply(change);
+    change.clear();
+    end = reader.offset();
+  }
+  if (!change.empty()) writer_.CutAt(end);
+}
+
+void SessionLog::Append(const Change& change) {
+  for (const LogEvent& event : change) writer_.Write(event);
   writer_.Flush();
-  Apply(event);
+  Apply(change);
 }
 
 // One way to change the samples, whether the change is new or read again: both give the same state.
-void SessionLog::Apply(const LogEvent& event) {
+void SessionLog::Apply(const Change& change) {
+  for (const LogEvent& each : change) {
+    const std::vector<std::uint8_t> bytes = EncodeLogEvent(each);
+    file_hash_.Add(bytes.data(), bytes.size());
+  }
+  const LogEvent& event = change.back();
   if (event.channel == kSampleChannel) {
     samples_.push_back(FromMessage(Decode<sample_t>(event)));
     next_id_ = samples_.back().id + 1;
   } else if (event.channel == kEventChannel) {
-    const event_t change = Decode<event_t>(event);
-    if (change.kind == "reset") {
+    const event_t fate = Decode<event_t>(event);
+    if (fate.kind == "reset") {
       samples_.clear();
     } else {
-      samples_.erase(std::remove_if(samples_.begin(),
-                                    samples_.end(),
-                                    [&change](const BoardSample& each) {
-                                      return each.id == change.sample_id;
-                                    }),
-                     samples_.end());
+      samples_.erase(
+          std::remove_if(samples_.begin(),
+                         samples_.end(),
+                         [&fate](const BoardSample& each) { return each.id == fate.sample_id; }),
+          samples_.end());
     }
   } else {
     throw std::runtime_error("it has channel " + event.channel);

@@ -50,8 +50,10 @@ struct CameraBoard {
 /// One pose of the board, seen by both sensors: what calibration is made from.
 struct BoardSample {
   std::int64_t id = 0;     ///< 1, 2, ... in the order of acceptance; never used again.
-  std::int64_t utime = 0;  ///< Lidar capture time, microseconds since the Unix epoch.
-  int num_frames = 1;      ///< Frames averaged.
+  std::int64_t utime = 0;  ///< Capture time of the first frame's sweep, us since the Unix epoch.
+  /// Exposure time of the image paired with that sweep; 0 if unknown (features read from a table).
+  std::int64_t camera_utime = 0;
+  int num_frames = 1;  ///< Frames averaged.
   LidarBoard lidar;
   CameraBoard camera;
 };

@@ -234,6 +234,7 @@ PickerDecision SamplePicker::JudgePair(const Pair& pair) {
     window_.clear();
     BoardSample sample =
         AverageSightings({*pair.lidar.board}, {*pair.camera.board}, pair.lidar.utime, board_);
+    sample.camera_utime = pair.camera.utime;
     known_T_camera_board_.push_back(TransformFromPose(sample.camera.pose));
     return {pair.lidar.utime, std::move(sample), {}};
   }
@@ -268,8 +269,10 @@ PickerDecision SamplePicker::JudgeWindow() {
     camera.push_back(*pair.camera.board);
   }
   const std::int64_t utime = window_.front().lidar.utime;
+  const std::int64_t camera_utime = window_.front().camera.utime;
   window_.erase(window_.begin());  // the next pair may complete a new window
   BoardSample sample = AverageSightings(lidar, camera, utime, board_);
+  sample.camera_utime = camera_utime;
   if (!IsNew(sample)) return {utime, {}, "pose is not new"};
   known_T_camera_board_.push_back(TransformFromPose(sample.camera.pose));
   return {utime, std::move(sample), {}};

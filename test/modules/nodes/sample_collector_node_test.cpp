@@ -1,5 +1,6 @@
 #include "sample_collector/sample_collector_node.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include <gmock/gmock.h>
@@ -10,6 +11,8 @@
 #include "support/sightings.hpp"
 #include "support/temporary_folder.hpp"
 #include "voqcal/event_t.hpp"
+#include "voqcal/image_t.hpp"
+#include "voqcal/pointcloud2_t.hpp"
 #include "voqcal/samples_t.hpp"
 
 namespace voqcal {
@@ -33,11 +36,22 @@ class SampleCollectorNodeTest : public ::testing::Test {
     events_ = std::make_unique<test::Inbox<event_t>>(bus_.get(), rig_.channels.calib_event);
   }
 
-  /// The board rests at a pose over three frames, and a fourth that closes the third.
-  void ShowStop(int stop) {
-    for (const test::SightingMessages& frame : test::StillFrames(samples_, stop)) {
-      test::Send(bus_.get(), rig_.channels.lidar_board, frame.lidar);
-      test::Send(bus_.get(), rig_.channels.camera_board, frame.camera);
+  /// The board rests at a pose over three frames, and a fourth that closes the third. Of the frames
+  /// listed the collector also sees what the detectors saw.
+  void ShowStop(int stop, const std::vector<std::size_t>& with_scene = {}) {
+    const auto frames = test::StillFrames(samples_, stop);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (std::count(with_scene.begin(), with_scene.end(), i) != 0) {
+        pointcloud2_t sweep{};
+        sweep.utime = frames[i].lidar.utime;
+        sweep.seq = static_cast<std::int32_t>(i);
+        test::Send(bus_.get(), rig_.channels.lidar_points, sweep);
+        image_t image{};
+        image.utime = frames[i].camera.utime;
+        test::Send(bus_.get(), rig_.channels.camera_image, image);
+      }
+      test::Send(bus_.get(), rig_.channels.lidar_board, frames[i].lidar);
+      test::Send(bus_.get(), rig_.channels.camera_board, frames[i].camera);
     }
   }
 
@@ -164,6 +178,28 @@ TEST_F(SampleCollectorNodeTest, CaptureTakesASinglePair) {
   test::Send(bus_.get(), rig_.channels.camera_board, frames[1].camera);  // closes the pair
   ASSERT_THAT(node_->samples(), SizeIs(1));
   EXPECT_EQ(node_->samples()[0].num_frames, 1);
+}
+
+TEST_F(SampleCollectorNodeTest, KeepsTheSweepAndTheImageOfTheSamplesFirstFrame) {
+  ShowStop(0, {0, 1, 2});
+  SessionSceneReader reader(folder_.path() / kSamplesLogName);
+  const auto scene = reader.Next();
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(scene->sample_id, 1);
+  EXPECT_EQ(scene->sweep.utime, samples_[0].utime);
+  EXPECT_EQ(scene->image.utime, samples_[0].utime);
+  EXPECT_EQ(scene->sweep.seq, 0);
+  EXPECT_FALSE(reader.Next());
+  EXPECT_EQ(last_event().reason, "");
+  EXPECT_EQ(node_->counters().count("accepted without its scene"), 0U);
+}
+
+TEST_F(SampleCollectorNodeTest, SaysThatASamplesFramesWereLost) {
+  ShowStop(0, {1, 2});
+  ASSERT_THAT(node_->samples(), SizeIs(1));
+  EXPECT_EQ(last_event().reason, "its sweep or image did not arrive: no scene");
+  EXPECT_EQ(node_->counters().at("accepted without its scene"), 1);
+  EXPECT_FALSE(SessionSceneReader(folder_.path() / kSamplesLogName).Next());
 }
 
 TEST_F(SampleCollectorNodeTest, FinishesOnlyOnceNoFrameHasComeForASecond) {

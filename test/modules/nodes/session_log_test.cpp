@@ -109,6 +109,49 @@ TEST_F(SessionLogTest, CutsAHalfWrittenLastEventAndGoesOn) {
   }
 }
 
+TEST_F(SessionLogTest, KeepsASamplesSceneBeforeIt) {
+  const SensorFrame sweep = {11, {1, 2, 3}};
+  const SensorFrame image = {12, {4, 5}};
+  SessionLog session(folder_.path());
+  session.Accept(samples_[0], {&sweep, &image});
+  session.Accept(samples_[1], {&sweep, nullptr});  // half a scene is none
+  EXPECT_EQ(session.revision(), 2);
+  EXPECT_EQ(session.Sha256(), Sha256OfFile(log_));
+  LogReader reader(log_);
+  std::vector<std::string> events;
+  while (const auto event = reader.Next()) {
+    events.push_back(std::to_string(event->number) + " " + event->channel);
+  }
+  EXPECT_THAT(events,
+              ElementsAre("0 CALIB_SWEEP", "0 CALIB_IMAGE", "0 CALIB_SAMPLE", "1 CALIB_SAMPLE"));
+}
+
+TEST_F(SessionLogTest, CutsASceneWhoseSampleIsMissingAndGoesOn) {
+  const SensorFrame sweep = {11, {1, 2, 3}};
+  const SensorFrame image = {12, {4, 5}};
+  std::uintmax_t one_sample = 0;
+  std::string hash;
+  std::string whole;
+  {
+    SessionLog session(folder_.path());
+    session.Accept(samples_[0], {&sweep, &image});
+    one_sample = std::filesystem::file_size(log_);
+    session.Accept(samples_[1], {&sweep, &image});
+    hash = session.Sha256();
+    whole = ReadWholeFile(log_);
+  }
+  const std::size_t sweep_bytes = 28 + std::string(kSceneSweepChannel).size() + 3;
+  for (const std::size_t num_left : {sweep_bytes, sweep_bytes + 5}) {
+    folder_.Write(kSamplesLogName, whole.substr(0, one_sample + num_left));
+    SessionLog session(folder_.path());
+    EXPECT_THAT(Ids(session), ElementsAre(1)) << num_left;
+    EXPECT_EQ(std::filesystem::file_size(log_), one_sample) << num_left;
+    session.Accept(samples_[1], {&sweep, &image});
+    EXPECT_EQ(ReadWholeFile(log_), whole) << num_left;
+    EXPECT_EQ(session.Sha256(), hash) << num_left;
+  }
+}
+
 TEST_F(SessionLogTest, RefusesAForeignFileAndLeavesItAsItIs) {
   const std::string foreign = "not an LCM log, but somebody's notes of the day";
   folder_.Write(kSamplesLogName, foreign);

@@ -18,6 +18,15 @@ TEST(Sha256OfBytes, GivesThePublishedDigests) {
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
+TEST(Sha256, IsThatOfAllThatWasAddedSoFar) {
+  Sha256 hash;
+  EXPECT_EQ(hash.Hex(), Sha256OfBytes(""));
+  hash.Add("ab", 2);
+  EXPECT_EQ(hash.Hex(), Sha256OfBytes("ab"));
+  hash.Add("c", 1);
+  EXPECT_EQ(hash.Hex(), Sha256OfBytes("abc"));
+}
+
 TEST(Sha256OfFile, IsThatOfItsBytes) {
   const test::TemporaryFolder folder;
   const std::string bytes(200001, 'x');  // several pieces, the last one short

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "messaging/log.hpp"
+#include "voqcal/image_t.hpp"
+#include "voqcal/pointcloud2_t.hpp"
+
+namespace voqcal {
+
+/// Name of a session's log of samples in its folder.
+inline constexpr char kSamplesLogName[] = "samples.lcm";
+
+/// Its channels. A change of the samples is one CALIB_SAMPLE (sample_t) or CALIB_EVENT (event_t); a
+/// sample's scene comes before it, as the sensors' own messages, under the same event number.
+inline constexpr char kSceneSweepChannel[] = "CALIB_SWEEP";  ///< pointcloud2_t
+inline constexpr char kSceneImageChannel[] = "CALIB_IMAGE";  ///< image_t
+inline constexpr char kSampleChannel[] = "CALIB_SAMPLE";
+inline constexpr char kEventChannel[] = "CALIB_EVENT";
+
+/// What both sensors saw at a sample's first frame; FromMessage makes a cloud and an image of it.
+struct SessionScene {
+  std::int64_t sample_id = 0;
+  pointcloud2_t sweep;
+  image_t image;
+};
+
+/// Reads the scenes of a session's samples.lcm, in order and one at a time: a session may hold more
+/// than fits in memory. Samples without a scene (a frame that was lost, features read from a table)
+/// are passed over; samples that were discarded later are not.
+///
+/// The session may go on meanwhile: what is being written is not read.
+class SessionSceneReader {
+ public:
+  /// @throws std::runtime_error naming the file, if it cannot be read.
+  explicit SessionSceneReader(const std::filesystem::path& samples_log);
+
+  /// The next sample's scene, or nothing at the end.
+  /// @throws std::runtime_error naming file, event and cause, if the log is damaged.
+  std::optional<SessionScene> Next();
+
+ private:
+  /// The next event; nothing at the end or at an event that is not yet whole.
+  std::optional<LogEvent> NextEvent();
+
+  std::filesystem::path path_;
+  LogReader reader_;
+};
+
+}  // namespace voqcal

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+namespace voqcal {
+
+/// One sensor message as it was sent, with its capture time.
+struct SensorFrame {
+  std::int64_t utime = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// The latest frames of one sensor, as many as fit: a sample is decided when both detectors have
+/// passed its time, some frames after the sensors saw it.
+class FrameBuffer {
+ public:
+  explicit FrameBuffer(std::size_t max_bytes) : max_bytes_(max_bytes) {}
+
+  void Add(SensorFrame frame);
+
+  /// The latest frame of that capture time; null if there is none (any more).
+  const SensorFrame* Find(std::int64_t utime) const;
+
+ private:
+  std::size_t max_bytes_;
+  std::size_t num_bytes_ = 0;
+  std::deque<SensorFrame> frames_;
+};
+
+}  // namespace voqcal

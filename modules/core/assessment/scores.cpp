@@ -40,7 +40,9 @@ Spread SpreadOf(const std::vector<PoseScore>& poses, double PoseScore::*figure) 
   return spread;
 }
 
-SceneScore Summarise(std::vector<PoseScore> poses) {
+}  // namespace
+
+SceneScore SummariseScores(std::vector<PoseScore> poses) {
   SceneScore scene;
   scene.centre_px = SpreadOf(poses, &PoseScore::centre_px);
   scene.centre_mm = SpreadOf(poses, &PoseScore::centre_mm);
@@ -49,8 +51,6 @@ SceneScore Summarise(std::vector<PoseScore> poses) {
   scene.poses = std::move(poses);
   return scene;
 }
-
-}  // namespace
 
 PoseScore ScorePose(const BoardSample& sample,
                     const CameraModel& camera,
@@ -75,7 +75,7 @@ SceneScore ScoreScene(const std::vector<const BoardSample*>& samples,
   for (const BoardSample* sample : samples) {
     poses.push_back(ScorePose(*sample, camera, T_camera_lidar));
   }
-  return Summarise(std::move(poses));
+  return SummariseScores(std::move(poses));
 }
 
 SceneScore LeaveOneOutScore(const std::vector<const BoardSample*>& samples,
@@ -90,7 +90,7 @@ SceneScore LeaveOneOutScore(const std::vector<const BoardSample*>& samples,
     if (!refined.IsUsable()) continue;
     poses[left_out] = ScorePose(*samples[left_out], camera, refined.T_camera_lidar);
   }
-  return Summarise(std::move(poses));
+  return SummariseScores(std::move(poses));
 }
 
 }  // namespace voqcal

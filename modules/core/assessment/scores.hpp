@@ -39,6 +39,9 @@ struct SceneScore {
   Spread centre_px, centre_mm, corner_mm, normal_deg;
 };
 
+/// The spread of each figure over the poses.
+SceneScore SummariseScores(std::vector<PoseScore> poses);
+
 PoseScore ScorePose(const BoardSample& sample,
                     const CameraModel& camera,
                     const Eigen::Isometry3d& T_camera_lidar);

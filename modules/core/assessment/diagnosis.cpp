@@ -1,0 +1,223 @@
+#include "core/assessment/diagnosis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/assessment/fault_model.hpp"
+#include "core/assessment/nested_models.hpp"
+#include "core/geometry/rigid.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / M_PI;
+constexpr int kLeastForModels = 5;  // of 6 residuals each, for 6 + 2 parameters
+
+[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...) {
+  char text[512];
+  va_list args;
+  va_start(args, format);
+  std::vsnprintf(text, sizeof(text), format, args);
+  va_end(args);
+  return text;
+}
+
+double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+// Takes the samples that stand out from the equations, the worst first: each one pulls the fit.
+void SetOutliersAside(std::vector<FaultEquation>* equations,
+                      const DiagnosisOptions& options,
+                      Diagnosis* diagnosis) {
+  while (equations->size() > kLeastForModels) {
+    const FaultFit fit = FitFaults(*equations, {});
+    if (!fit.is_usable) return;
+    const std::vector<double> errors_m = CentreErrorsM(*equations, fit);
+    const auto worst = std::max_element(errors_m.begin(), errors_m.end());
+    const double median_m = Median(errors_m);
+    if (*worst < options.max_outlier_factor * median_m || *worst < 0.01) return;
+    const auto at = equations->begin() + (worst - errors_m.begin());
+    Finding finding;
+    finding.cause = "moving sample";
+    finding.value = 1e3 * *worst;
+    finding.unit = "mm";
+    // Of taking it out: half the square of its error by the noise level, which is the median by
+    // 1.54 for three normal errors together.
+    finding.log_likelihood_gain = 0.5 * std::pow(1.54 * *worst / median_m, 2);
+    finding.text = Format(
+        "sample %lld is %.0f mm off where half of the others are within %.0f mm: "
+        "the board moved, or was taken for something else",
+        static_cast<long long>(at->sample_id),
+        finding.value,
+        1e3 * median_m);
+    diagnosis->findings.push_back(finding);
+    equations->erase(at);
+  }
+}
+
+void JudgeInconsistent(int num_inconsistent, std::size_t num_used, Diagnosis* diagnosis) {
+  if (num_inconsistent == 0) return;
+  Finding finding;
+  finding.cause = "moving sample";
+  finding.value = num_inconsistent;
+  finding.text = Format(
+      "%d of %zu samples contradict the others and were left out: the board "
+      "moved, or was taken for something else",
+      num_inconsistent,
+      num_used + static_cast<std::size_t>(num_inconsistent));
+  diagnosis->findings.push_back(finding);
+}
+
+// RMS angle of directions from their mean.
+double SpreadRad(const std::vector<Eigen::Vector3d>& directions) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& each : directions) mean += each.normalized();
+  double sum = 0;
+  for (const Eigen::Vector3d& each : directions) sum += std::pow(AngleBetween(each, mean), 2);
+  return std::sqrt(sum / static_cast<double>(directions.size()));
+}
+
+void JudgePoses(const std::vector<const BoardSample*>& samples,
+                const DiagnosisOptions& options,
+                Diagnosis* diagnosis) {
+  const auto report = [diagnosis](double value, const char* unit, const std::string& text) {
+    Finding finding;
+    finding.cause = "too few or too similar poses";
+    finding.value = value;
+    finding.unit = unit;
+    finding.text = text;
+    diagnosis->findings.push_back(finding);
+  };
+  if (static_cast<int>(samples.size()) < options.min_samples) {
+    report(static_cast<double>(samples.size()),
+           "samples",
+           Format("%zu samples are few: show the board at %d places or more",
+                  samples.size(),
+                  options.min_samples));
+  }
+  if (samples.empty()) return;
+  std::vector<Eigen::Vector3d> normals;
+  std::vector<Eigen::Vector3d> centres;
+  for (const BoardSample* sample : samples) {
+    normals.push_back(sample->camera.pose.normal);
+    centres.push_back(sample->camera.pose.centre_m);
+  }
+  const double tilt_rad = SpreadRad(normals);
+  if (tilt_rad < options.min_tilt_spread_rad) {
+    report(kDegPerRad * tilt_rad,
+           "deg",
+           Format("the board always faces much the same way (its normals spread %.1f deg): tilt it "
+                  "to all sides",
+                  kDegPerRad * tilt_rad));
+  }
+  const double view_rad = SpreadRad(centres);
+  if (view_rad < options.min_view_spread_rad) {
+    report(kDegPerRad * view_rad,
+           "deg",
+           Format("the board is always in much the same direction (its centres spread %.1f deg): "
+                  "show it left and right, high and low",
+                  kDegPerRad * view_rad));
+  }
+}
+
+// The outline against its edges as the lidar measures them freely.
+void JudgeOutline(const std::vector<const BoardSample*>& samples,
+                  const BoardSpec& board,
+                  const DiagnosisOptions& options,
+                  Diagnosis* diagnosis) {
+  const auto true_lengths_m = board.EdgeLengthsM();
+  double sum_m = 0;
+  double sum_m2 = 0;
+  int num_edges = 0;
+  for (const BoardSample* sample : samples) {
+    for (std::size_t i = 0; i < true_lengths_m.size(); ++i) {
+      const double error_m = true_lengths_m[i] - sample->lidar.edge_lengths_m[i];
+      sum_m += error_m;
+      sum_m2 += error_m * error_m;
+      ++num_edges;
+    }
+  }
+  if (num_edges == 0) return;
+  const double mean_m = sum_m / num_edges;
+  const double variance_m2 = std::max(1e-12, sum_m2 / num_edges - mean_m * mean_m);
+  const double error_m = std::sqrt(variance_m2 / num_edges);
+  const double gain = 0.5 * num_edges * std::log1p(mean_m * mean_m / variance_m2);
+  if (std::abs(mean_m) < options.min_edge_error_m || gain < options.min_log_likelihood_gain) return;
+  Finding finding;
+  finding.cause = "board's outline";
+  finding.value = 1e3 * mean_m;
+  finding.standard_error = 1e3 * error_m;
+  finding.unit = "mm";
+  finding.log_likelihood_gain = gain;
+  finding.explained = mean_m * mean_m / (mean_m * mean_m + variance_m2);
+  finding.text = Format(
+      "the board's edges are given %.0f +- %.0f mm %s than the lidar measures "
+      "them: explains %.0f %% of the squared edge errors",
+      1e3 * std::abs(mean_m),
+      1e3 * error_m,
+      mean_m > 0 ? "longer" : "shorter",
+      100 * finding.explained);
+  diagnosis->findings.push_back(finding);
+}
+
+// By the gain in likelihood; what has none to compare comes last.
+void Rank(std::vector<Finding>* findings) {
+  const auto rank = [](const Finding& finding) {
+    return std::isnan(finding.log_likelihood_gain) ? -1.0 : finding.log_likelihood_gain;
+  };
+  std::stable_sort(findings->begin(), findings->end(), [&rank](const Finding& a, const Finding& b) {
+    return rank(a) > rank(b);
+  });
+}
+
+}  // namespace
+
+std::vector<std::string> DiagnosisOptions::Problems() const {
+  std::vector<std::string> problems;
+  const auto require_positive = [&problems](const char* name, double value) {
+    if (value > 0) return;
+    std::ostringstream text;
+    text << name << " must be positive, is " << value;
+    problems.push_back(text.str());
+  };
+  require_positive("min_log_likelihood_gain", min_log_likelihood_gain);
+  require_positive("min_held_out_gain", min_held_out_gain);
+  require_positive("min_focal_scale", min_focal_scale);
+  require_positive("min_principal_point_px", min_principal_point_px);
+  require_positive("min_square_scale", min_square_scale);
+  require_positive("min_range_offset_m", min_range_offset_m);
+  require_positive("min_edge_error_m", min_edge_error_m);
+  require_positive("max_outlier_factor", max_outlier_factor);
+  require_positive("min_samples", min_samples);
+  require_positive("min_tilt_spread_rad", min_tilt_spread_rad);
+  require_positive("min_view_spread_rad", min_view_spread_rad);
+  return problems;
+}
+
+Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
+                   int num_inconsistent,
+                   const BoardSpec& board,
+                   const CameraModel& camera,
+                   const Eigen::Isometry3d& T_camera_lidar,
+                   const DiagnosisOptions& options) {
+  const auto problems = options.Problems();
+  if (!problems.empty()) throw std::invalid_argument("DiagnosisOptions: " + problems.front());
+  Diagnosis diagnosis;
+  std::vector<FaultEquation> equations = MakeFaultEquations(samples, board, camera, T_camera_lidar);
+  SetOutliersAside(&equations, options, &diagnosis);
+  JudgeModels(equations, options, &diagnosis);
+  JudgeOutline(samples, board, options, &diagnosis);
+  Rank(&diagnosis.findings);
+  JudgeInconsistent(num_inconsistent, samples.size(), &diagnosis);
+  JudgePoses(samples, options, &diagnosis);
+  diagnosis.not_judged.push_back("time offset: samples are taken at rest, where it does not show");
+  return diagnosis;
+}
+
+}  // namespace voqcal

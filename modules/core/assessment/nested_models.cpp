@@ -1,0 +1,165 @@
+#include "core/assessment/nested_models.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <string>
+
+namespace voqcal {
+namespace {
+
+[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...) {
+  char text[512];
+  va_list args;
+  va_start(args, format);
+  std::vsnprintf(text, sizeof(text), format, args);
+  va_end(args);
+  return text;
+}
+
+/// One group of parameters that may be added to the plain fit.
+struct Suspect {
+  const char* cause;
+  std::vector<FaultParameter> faults;
+  double least;  // of the parameters' length: smaller does not matter
+  double scale;  // from the parameter's unit to that of the text
+  const char* unit;
+};
+
+std::vector<Suspect> Suspects(const DiagnosisOptions& options) {
+  return {{"focal length", {kFocalScale}, options.min_focal_scale, 100, "%"},
+          {"principal point", {kPrincipalX, kPrincipalY}, options.min_principal_point_px, 1, "px"},
+          {"board's squares", {kSquareScale}, options.min_square_scale, 100, "%"},
+          {"lidar range offset", {kRangeOffset}, options.min_range_offset_m, 1000, "mm"}};
+}
+
+struct Candidate {
+  Suspect suspect;
+  FaultFit fit;
+  double gain = 0;
+};
+
+double Length(const FaultFit& fit, const std::vector<FaultParameter>& faults) {
+  double sum = 0;
+  for (const FaultParameter fault : faults) {
+    sum += std::pow(fit.value[kNumExtrinsicParameters + fault], 2);
+  }
+  return std::sqrt(sum);
+}
+
+double LengthError(const FaultFit& fit, const std::vector<FaultParameter>& faults) {
+  double sum = 0;
+  for (const FaultParameter fault : faults) {
+    sum += std::pow(fit.standard_error[kNumExtrinsicParameters + fault], 2);
+  }
+  return std::sqrt(sum);
+}
+
+// "the focal length given is 2.0 +- 0.1 % too long": what is wrong with what was given.
+std::string Claim(const Suspect& suspect, const FaultFit& fit) {
+  const double value = suspect.scale * fit.value[kNumExtrinsicParameters + suspect.faults[0]];
+  const double error = suspect.scale * LengthError(fit, suspect.faults);
+  switch (suspect.faults[0]) {
+    case kFocalScale:
+      return Format("the focal length given is %.2f +- %.2f %% too %s",
+                    std::abs(value),
+                    error,
+                    value < 0 ? "long" : "short");
+    case kPrincipalX:
+      return Format(
+          "the true principal point lies %.1f px right and %.1f px below that given "
+          "(+- %.1f)",
+          value,
+          fit.value[kNumExtrinsicParameters + kPrincipalY],
+          error);
+    case kSquareScale:
+      return Format("the board's squares are given %.2f +- %.2f %% too %s",
+                    std::abs(value),
+                    error,
+                    value < 0 ? "large" : "small");
+    default:
+      return Format("the lidar's ranges are %.1f +- %.1f mm too %s",
+                    std::abs(value),
+                    error,
+                    value > 0 ? "long" : "short");
+  }
+}
+
+Finding MakeFinding(const Candidate& candidate, const FaultFit& before) {
+  const FaultFit& fit = candidate.fit;
+  const std::vector<FaultParameter>& faults = candidate.suspect.faults;
+  Finding finding;
+  finding.cause = candidate.suspect.cause;
+  finding.value =
+      candidate.suspect.scale *
+      (faults.size() == 1 ? fit.value[kNumExtrinsicParameters + faults[0]] : Length(fit, faults));
+  finding.standard_error = candidate.suspect.scale * LengthError(fit, faults);
+  finding.unit = candidate.suspect.unit;
+  finding.log_likelihood_gain = candidate.gain;
+  finding.explained = 1 - fit.SumOfSquares(before.noise) / before.SumOfSquares(before.noise);
+  finding.held_out_before_mm = 1e3 * before.mean_held_out_error_m;
+  finding.held_out_after_mm = 1e3 * fit.mean_held_out_error_m;
+  finding.text = Claim(candidate.suspect, fit) +
+                 Format(
+                     ": explains %.0f %% of the squared residual; the held-out error of the "
+                     "centres in space falls from %.1f to %.1f mm",
+                     100 * finding.explained,
+                     finding.held_out_before_mm,
+                     finding.held_out_after_mm);
+  return finding;
+}
+
+bool IsWorthAWord(const Candidate& candidate,
+                  const FaultFit& before,
+                  const DiagnosisOptions& options) {
+  const FaultFit& fit = candidate.fit;
+  const std::vector<FaultParameter>& faults = candidate.suspect.faults;
+  const double length = Length(fit, faults);
+  return candidate.gain > options.min_log_likelihood_gain && length > candidate.suspect.least &&
+         length > 3 * LengthError(fit, faults) &&
+         fit.mean_held_out_error_m < (1 - options.min_held_out_gain) * before.mean_held_out_error_m;
+}
+
+}  // namespace
+
+void JudgeModels(const std::vector<FaultEquation>& equations,
+                 const DiagnosisOptions& options,
+                 Diagnosis* diagnosis) {
+  FaultFit now = FitFaults(equations, {});
+  std::vector<FaultParameter> fitted;
+  std::vector<Suspect> suspects = Suspects(options);
+  while (now.is_usable && !suspects.empty()) {
+    std::vector<Candidate> candidates;
+    for (const Suspect& suspect : suspects) {
+      std::vector<FaultParameter> faults = fitted;
+      faults.insert(faults.end(), suspect.faults.begin(), suspect.faults.end());
+      Candidate candidate{suspect, FitFaults(equations, faults)};
+      if (!candidate.fit.is_usable) {
+        if (fitted.empty()) {
+          diagnosis->not_judged.push_back(std::string(suspect.cause) +
+                                          ": the samples leave it open");
+        }
+        continue;
+      }
+      candidate.gain = candidate.fit.log_likelihood - now.log_likelihood;
+      if (IsWorthAWord(candidate, now, options)) candidates.push_back(candidate);
+    }
+    const auto best = std::max_element(
+        candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+          return a.gain < b.gain;
+        });
+    if (best == candidates.end()) return;
+    diagnosis->findings.push_back(MakeFinding(*best, now));
+    now = best->fit;
+    fitted.insert(fitted.end(), best->suspect.faults.begin(), best->suspect.faults.end());
+    suspects.erase(std::remove_if(suspects.begin(),
+                                  suspects.end(),
+                                  [&best](const Suspect& each) {
+                                    return each.faults == best->suspect.faults;
+                                  }),
+                   suspects.end());
+  }
+}
+
+}  // namespace voqcal

@@ -1,0 +1,66 @@
+#include "core/assessment/predicted_error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "core/estimation/left_perturbation.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr std::array<double, 6> kRangesM = {1, 2, 5, 10, 20, 50};
+constexpr double kMillimetresPerMetre = 1000;
+
+struct PointError {
+  double px = 0;
+  double mm = 0;
+};
+
+PointError ErrorAt(const Eigen::Vector3d& point_camera_m,
+                   const Eigen::Isometry3d& T_camera_lidar,
+                   const Matrix6d& covariance,
+                   const CameraModel& camera) {
+  Matrix36d J;
+  J << -Skew(point_camera_m - T_camera_lidar.translation()), Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d covariance_m2 = J * covariance * J.transpose();
+  const Eigen::Vector3d ray = point_camera_m.normalized();
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray * ray.transpose();
+  Matrix23d J_px;
+  ProjectWithJacobian(camera, point_camera_m, &J_px);
+  return {std::sqrt((J_px * covariance_m2 * J_px.transpose()).trace()),
+          kMillimetresPerMetre * std::sqrt((across * covariance_m2 * across).trace())};
+}
+
+}  // namespace
+
+std::vector<PredictedError> PredictErrors(const Eigen::Isometry3d& T_camera_lidar,
+                                          const Matrix6d& covariance,
+                                          const CameraModel& camera) {
+  const double right_px = camera.width_px - 1;
+  const double bottom_px = camera.height_px - 1;
+  std::vector<PredictedError> errors;
+  for (const double range_m : kRangesM) {
+    const auto at = [&](double x_px, double y_px) -> std::optional<PointError> {
+      const auto ray = camera.Unproject({x_px, y_px});
+      if (!ray || !camera.IsInFront(*ray)) return std::nullopt;
+      return ErrorAt(range_m * *ray, T_camera_lidar, covariance, camera);
+    };
+    PredictedError error;
+    error.range_m = range_m;
+    const PointError centre = at(right_px / 2, bottom_px / 2).value_or(PointError{});
+    error.centre_px = centre.px;
+    error.centre_mm = centre.mm;
+    for (const auto& corner :
+         {at(0, 0), at(right_px, 0), at(0, bottom_px), at(right_px, bottom_px)}) {
+      if (!corner) continue;  // beyond what the lens model can say
+      error.corner_px = std::max(error.corner_px, corner->px);
+      error.corner_mm = std::max(error.corner_mm, corner->mm);
+    }
+    errors.push_back(error);
+  }
+  return errors;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "core/camera/camera_model.hpp"
+#include "core/geometry/rigid.hpp"
+
+namespace voqcal {
+
+/// How far a lidar point is expected to land from where the camera sees it, by the extrinsic's
+/// covariance alone: root mean square, across the camera's ray.
+struct PredictedError {
+  double range_m = 0;    ///< Of the point from the camera.
+  double centre_px = 0;  ///< In the middle of the image...
+  double centre_mm = 0;
+  double corner_px = 0;  ///< ...and in the worst of its corners.
+  double corner_mm = 0;
+};
+
+/// At 1, 2, 5, 10, 20 and 50 m.
+///
+/// A point p = R q + t of the camera frame moves by d = r x (p - t) + dt when [r; dt] perturbs the
+/// extrinsic, so that its covariance is J C J' with J = [-[p - t]x, I].
+/// @param covariance  of [rotation_rad; translation_m] of T_camera_lidar, left (camera) side.
+std::vector<PredictedError> PredictErrors(const Eigen::Isometry3d& T_camera_lidar,
+                                          const Matrix6d& covariance,
+                                          const CameraModel& camera);
+
+}  // namespace voqcal

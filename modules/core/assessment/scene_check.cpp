@@ -1,0 +1,294 @@
+#include "core/assessment/scene_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <sstream>
+#include <stdexcept>
+
+namespace voqcal {
+namespace {
+
+constexpr double kRadPerDeg = M_PI / 180.0;
+constexpr int kNumSectors = 12;
+using Sectors = unsigned;  // a bit for each
+constexpr Sectors kAllSectors = (1U << kNumSectors) - 1;
+constexpr double kFirstStepRad = 0.32 * kRadPerDeg;  // of the climb to the peak
+constexpr double kProbesRad[] = {
+    0.25 * kRadPerDeg, 0.5 * kRadPerDeg, 1.0 * kRadPerDeg, 2.0 * kRadPerDeg};
+constexpr double kProbesM[] = {0.025, 0.05, 0.1, 0.2};
+
+struct Edge {
+  Eigen::Vector3d position_lidar_m;
+  const SceneView* view;
+  int sector;
+};
+
+// Pixel coordinates in the reduced image: its pixel (0, 0) covers the first `reduction` pixels.
+Eigen::Vector2d Reduced(const Eigen::Vector2d& pixel_px, double reduction) {
+  return ((pixel_px.array() + 0.5) / reduction - 0.5).matrix();
+}
+
+// Rank at a place between pixels, 0 to 1; negative outside the image and on the board.
+double RankAt(const SceneView& view, const Eigen::Vector2d& pixel_px) {
+  const Eigen::Vector2d at = Reduced(pixel_px, view.reduction);
+  const double left = std::floor(at.x());
+  const double top = std::floor(at.y());
+  const int x = static_cast<int>(left);
+  const int y = static_cast<int>(top);
+  if (x < 0 || y < 0 || x + 1 >= view.edge_rank.cols || y + 1 >= view.edge_rank.rows) return -1;
+  const uchar* upper = view.edge_rank.ptr<uchar>(y) + x;
+  const uchar* lower = view.edge_rank.ptr<uchar>(y + 1) + x;
+  if (upper[0] == 0 || upper[1] == 0 || lower[0] == 0 || lower[1] == 0) return -1;
+  const double fx = at.x() - left;
+  const double fy = at.y() - top;
+  const double rank =
+      (1 - fy) * ((1 - fx) * upper[0] + fx * upper[1]) + fy * ((1 - fx) * lower[0] + fx * lower[1]);
+  return (rank - 1) / 254;
+}
+
+double RankOf(const Edge& edge, const CameraModel& camera, const Eigen::Isometry3d& T) {
+  const Eigen::Vector3d position_camera_m = T * edge.position_lidar_m;
+  if (!camera.IsInFront(position_camera_m)) return -1;
+  return RankAt(*edge.view, camera.Project(position_camera_m));
+}
+
+// The edges that the image shows, in sectors of equally many by azimuth.
+std::vector<Edge> EdgesInView(const std::vector<SceneView>& views,
+                              const CameraModel& camera,
+                              const Eigen::Isometry3d& T_camera_lidar) {
+  std::vector<Edge> edges;
+  for (const SceneView& view : views) {
+    for (const Eigen::Vector3f& position : view.edges_lidar_m) {
+      const Edge edge = {position.cast<double>(), &view, 0};
+      if (RankOf(edge, camera, T_camera_lidar) >= 0) edges.push_back(edge);
+    }
+  }
+  const auto azimuth = [&T_camera_lidar](const Edge& edge) {
+    const Eigen::Vector3d p = T_camera_lidar * edge.position_lidar_m;
+    return std::atan2(p.x(), p.z());
+  };
+  std::stable_sort(edges.begin(), edges.end(), [&azimuth](const Edge& a, const Edge& b) {
+    return azimuth(a) < azimuth(b);
+  });
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    edges[i].sector = static_cast<int>(i * kNumSectors / edges.size());
+  }
+  return edges;
+}
+
+double Score(const std::vector<Edge>& edges,
+             const CameraModel& camera,
+             const Eigen::Isometry3d& T_camera_lidar,
+             Sectors counted = kAllSectors) {
+  double sum = 0;
+  int num_seen = 0;
+  for (const Edge& edge : edges) {
+    if ((counted >> edge.sector & 1U) == 0) continue;
+    const double rank = RankOf(edge, camera, T_camera_lidar);
+    if (rank < 0) continue;
+    sum += rank;
+    ++num_seen;
+  }
+  return num_seen == 0 ? 0 : sum / num_seen;
+}
+
+Eigen::Isometry3d Turned(const Eigen::Isometry3d& T_camera_lidar, const Eigen::Vector3d& turn_rad) {
+  Vector6d delta = Vector6d::Zero();
+  delta.head<3>() = turn_rad;
+  return PerturbLeft(T_camera_lidar, delta);
+}
+
+// Climbs from `turn_rad`, axis by axis, with steps that halve from `step_rad`.
+Eigen::Vector3d Climb(const std::vector<Edge>& edges,
+                      const CameraModel& camera,
+                      const Eigen::Isometry3d& T_camera_lidar,
+                      Eigen::Vector3d turn_rad,
+                      double step_rad,
+                      Sectors counted = kAllSectors) {
+  constexpr double kLastStepRad = 0.01 * kRadPerDeg;
+  constexpr double kFarthestRad = 3 * kRadPerDeg;
+  const auto score_at = [&](const Eigen::Vector3d& turn) {
+    return Score(edges, camera, Turned(T_camera_lidar, turn), counted);
+  };
+  double best = score_at(turn_rad);
+  for (; step_rad > kLastStepRad; step_rad /= 2) {
+    for (bool is_climbing = true; is_climbing;) {
+      is_climbing = false;
+      for (int i = 0; i < 6; ++i) {
+        const Eigen::Vector3d there =
+            turn_rad + (i % 2 == 0 ? step_rad : -step_rad) * Eigen::Vector3d::Unit(i / 2);
+        if (there.norm() > kFarthestRad) continue;
+        const double score = score_at(there);
+        if (score <= best) continue;
+        best = score;
+        turn_rad = there;
+        is_climbing = true;
+      }
+    }
+  }
+  return turn_rad;
+}
+
+std::vector<SceneProbe> Probe(const std::vector<Edge>& edges,
+                              const CameraModel& camera,
+                              const Eigen::Isometry3d& T_camera_lidar) {
+  std::vector<SceneProbe> probes;
+  for (int axis = 0; axis < 6; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      for (const double size : axis < 3 ? kProbesRad : kProbesM) {
+        SceneProbe probe;
+        probe.delta[axis] = sign * size;
+        probe.score = Score(edges, camera, PerturbLeft(T_camera_lidar, probe.delta));
+        probes.push_back(probe);
+      }
+    }
+  }
+  return probes;
+}
+
+// Where to climb from: the best of the turns that were probed.
+Eigen::Vector3d BestTurn(const SceneCheck& check) {
+  Eigen::Vector3d turn_rad = Eigen::Vector3d::Zero();
+  double best = check.score;
+  for (const SceneProbe& probe : check.probes) {
+    if (!probe.delta.tail<3>().isZero() || probe.score <= best) continue;
+    best = probe.score;
+    turn_rad = probe.delta.head<3>();
+  }
+  return turn_rad;
+}
+
+// Half of the sectors, so that any two halves share half of theirs: the quadratic residues modulo
+// 11, turned (Paley's construction of a Hadamard matrix), as balanced half-samples take them.
+Sectors Half(int turn) {
+  Sectors half = 1U << (kNumSectors - 1);
+  for (const int residue : {1, 3, 4, 5, 9}) half |= 1U << ((residue + turn) % 11);
+  return half;
+}
+
+// Balanced half-samples (McCarthy, Pseudo-replication: half samples, 1969): the peaks of halves of
+// the scene scatter about the whole scene's as that does about the truth. Poses share the scene
+// that stands still, so they are not independent; parts of the scene are.
+Eigen::Vector3d Sigma(const std::vector<Edge>& edges,
+                      const CameraModel& camera,
+                      const Eigen::Isometry3d& T_camera_lidar,
+                      const Eigen::Vector3d& peak_rad) {
+  constexpr int kNumHalves = 11;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < kNumHalves; ++i) {
+    const Eigen::Vector3d half_peak_rad =
+        Climb(edges, camera, T_camera_lidar, peak_rad, kFirstStepRad, Half(i));
+    sum += (half_peak_rad - peak_rad).cwiseAbs2();
+  }
+  return (sum / kNumHalves).cwiseSqrt();
+}
+
+[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...) {
+  char text[512];
+  va_list args;
+  va_start(args, format);
+  std::vsnprintf(text, sizeof(text), format, args);
+  va_end(args);
+  return text;
+}
+
+// How much higher the peak is than turns and shifts so large that nothing fits.
+double Contrast(const SceneCheck& check) {
+  double sum = 0;
+  int num_far = 0;
+  for (const SceneProbe& probe : check.probes) {
+    const bool is_far = probe.delta.head<3>().norm() > 0.9 * kProbesRad[3] ||
+                        probe.delta.tail<3>().norm() > 0.9 * kProbesM[3];
+    if (!is_far) continue;
+    sum += probe.score;
+    ++num_far;
+  }
+  return check.peak_score - sum / num_far;
+}
+
+void Judge(const SceneCheckOptions& options, SceneCheck* check) {
+  const Eigen::Vector3d offset_deg = check->offset_rad / kRadPerDeg;
+  const Eigen::Vector3d sigma_deg = check->sigma_rad / kRadPerDeg;
+  const std::string where = Format("x %.2f +- %.2f, y %.2f +- %.2f, z %.2f +- %.2f deg",
+                                   offset_deg.x(),
+                                   sigma_deg.x(),
+                                   offset_deg.y(),
+                                   sigma_deg.y(),
+                                   offset_deg.z(),
+                                   sigma_deg.z());
+  const auto num_open = (check->sigma_rad.array() > options.max_sigma_rad).count();
+  if (num_open > 1 || Contrast(*check) < options.min_contrast) {
+    check->reason = "the sensors share too few sharp edges (best turn: " + where + ")";
+    return;
+  }
+  bool is_off = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double sigma_rad = check->sigma_rad[axis];
+    is_off = is_off || (sigma_rad <= options.max_sigma_rad &&
+                        std::abs(check->offset_rad[axis]) >
+                            std::max(options.tolerance_rad, options.num_sigmas * sigma_rad));
+  }
+  check->verdict = is_off ? SceneVerdict::kDisagrees : SceneVerdict::kAgrees;
+  check->reason = Format("its edges fit best when turned by %.2f deg (", offset_deg.norm()) +
+                  where + Format("), %.0f mm at 10 m", 1e4 * check->offset_rad.head<2>().norm());
+}
+
+}  // namespace
+
+std::vector<std::string> SceneCheckOptions::Problems() const {
+  std::vector<std::string> problems = view.Problems();
+  const auto require_positive = [&problems](const char* name, double value) {
+    if (value > 0) return;
+    std::ostringstream text;
+    text << name << " must be positive, is " << value;
+    problems.push_back(text.str());
+  };
+  require_positive("min_edges", min_edges);
+  require_positive("min_contrast", min_contrast);
+  require_positive("max_sigma_rad", max_sigma_rad);
+  require_positive("tolerance_rad", tolerance_rad);
+  require_positive("num_sigmas", num_sigmas);
+  return problems;
+}
+
+std::string ToString(SceneVerdict verdict) {
+  switch (verdict) {
+    case SceneVerdict::kNotJudged:
+      return "not judged";
+    case SceneVerdict::kAgrees:
+      return "agrees";
+    case SceneVerdict::kDisagrees:
+      return "disagrees";
+  }
+  return "unknown";
+}
+
+SceneCheck CheckScene(const std::vector<SceneView>& views,
+                      const CameraModel& camera,
+                      const Eigen::Isometry3d& T_camera_lidar,
+                      const Eigen::Isometry3d& T_camera_lidar_averaged,
+                      const SceneCheckOptions& options) {
+  const auto problems = options.Problems();
+  if (!problems.empty()) throw std::invalid_argument("SceneCheckOptions: " + problems.front());
+  const std::vector<Edge> edges = EdgesInView(views, camera, T_camera_lidar);
+  SceneCheck check;
+  check.num_scenes = static_cast<int>(views.size());
+  check.num_edges = static_cast<int>(edges.size());
+  if (check.num_edges < options.min_edges) {
+    check.reason = views.empty() ? "no scene was kept with the samples"
+                                 : Format("only %d depth edges lie in the images", check.num_edges);
+    return check;
+  }
+  check.score = Score(edges, camera, T_camera_lidar);
+  check.averaged_score = Score(edges, camera, T_camera_lidar_averaged);
+  check.probes = Probe(edges, camera, T_camera_lidar);
+  check.offset_rad = Climb(edges, camera, T_camera_lidar, BestTurn(check), kFirstStepRad);
+  check.peak_score = Score(edges, camera, Turned(T_camera_lidar, check.offset_rad));
+  check.sigma_rad = Sigma(edges, camera, T_camera_lidar, check.offset_rad);
+  Judge(options, &check);
+  return check;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,223 @@
+#include "core/assessment/scene_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include <opencv2/imgproc.hpp>
+
+namespace voqcal {
+namespace {
+
+// Returns without a ring are put on scan lines by elevation. Half the spacing of the densest
+// spinning lidars, and well above the jitter of one beam.
+constexpr double kLineHeightRad = 0.1 * M_PI / 180.0;
+
+struct Return {
+  double azimuth_rad;
+  float range_m;
+  Eigen::Vector3f position_m;
+};
+
+using ScanLine = std::vector<Return>;
+
+// In order of azimuth.
+std::map<int, ScanLine> ScanLines(const PointCloud& cloud, double min_range_m) {
+  std::map<int, ScanLine> lines;
+  for (const LidarPoint& point : cloud.points) {
+    const Eigen::Vector3f& p = point.position_m;
+    const float range_m = p.norm();
+    if (!std::isfinite(range_m) || range_m < min_range_m) continue;
+    const double elevation_rad = std::asin(p.z() / range_m);
+    const int line =
+        cloud.has_ring ? point.ring : static_cast<int>(std::floor(elevation_rad / kLineHeightRad));
+    lines[line].push_back({std::atan2(p.y(), p.x()), range_m, p});
+  }
+  for (auto& [_, line] : lines) {
+    std::sort(line.begin(), line.end(), [](const Return& a, const Return& b) {
+      return a.azimuth_rad != b.azimuth_rad ? a.azimuth_rad < b.azimuth_rad : a.range_m < b.range_m;
+    });
+  }
+  return lines;
+}
+
+// The nearer surface must go on behind its last return by a step that is small against the jump: a
+// beam split between two surfaces answers from in between, and lies on none.
+bool IsEdge(const Return& before, const Return& last, const Return& next, double min_jump_m) {
+  const double jump_m = next.range_m - last.range_m;
+  return jump_m > min_jump_m && std::abs(last.range_m - before.range_m) < 0.2 * jump_m;
+}
+
+Eigen::Vector3f EdgeBetween(const Return& last, const Return& next) {
+  const Eigen::Vector3f half_way = last.position_m / last.range_m + next.position_m / next.range_m;
+  return last.range_m * half_way.normalized();
+}
+
+std::vector<Eigen::Vector3f> DepthEdges(const PointCloud& cloud, const SceneViewOptions& options) {
+  std::vector<Eigen::Vector3f> edges;
+  for (const auto& [_, line] : ScanLines(cloud, options.min_range_m)) {
+    const auto is_near = [&options](const Return& a, const Return& b) {
+      return std::abs(a.azimuth_rad - b.azimuth_rad) < options.max_step_rad;
+    };
+    for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+      const Return& left = line[i - 1];
+      const Return& here = line[i];
+      const Return& right = line[i + 1];
+      if (!is_near(left, here) || !is_near(here, right)) continue;
+      if (IsEdge(left, here, right, options.min_jump_m)) {
+        edges.push_back(EdgeBetween(here, right));
+      } else if (IsEdge(right, here, left, options.min_jump_m)) {
+        edges.push_back(EdgeBetween(here, left));
+      }
+    }
+  }
+  return edges;
+}
+
+bool IsAtBoard(const Eigen::Vector3d& point_board_m, const BoardSpec& board, double margin_m) {
+  return std::abs(point_board_m.x()) < board.width_m / 2 + margin_m &&
+         std::abs(point_board_m.y()) < board.height_m / 2 + margin_m &&
+         std::abs(point_board_m.z()) < margin_m;
+}
+
+std::vector<Eigen::Vector3f> WithoutBoard(const std::vector<Eigen::Vector3f>& points_lidar_m,
+                                          const BoardPose& pose_lidar,
+                                          const BoardSpec& board,
+                                          double margin_m) {
+  const Eigen::Isometry3d T_board_lidar = TransformFromPose(pose_lidar).inverse();
+  std::vector<Eigen::Vector3f> others;
+  for (const Eigen::Vector3f& point : points_lidar_m) {
+    if (!IsAtBoard(T_board_lidar * point.cast<double>(), board, margin_m)) others.push_back(point);
+  }
+  return others;
+}
+
+cv::Mat ReducedGray(const cv::Mat& image, int max_width_px) {
+  cv::Mat gray = image;
+  if (image.channels() == 3) cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+  while (gray.cols > max_width_px) {
+    cv::Mat half;
+    cv::resize(gray, half, cv::Size(gray.cols / 2, gray.rows / 2), 0, 0, cv::INTER_AREA);
+    gray = half;
+  }
+  return gray;
+}
+
+cv::Mat GradientMagnitude(const cv::Mat& gray, double blur_px) {
+  cv::Mat smooth;
+  cv::GaussianBlur(gray, smooth, cv::Size(), blur_px);
+  cv::Mat dx;
+  cv::Mat dy;
+  cv::Sobel(smooth, dx, CV_16S, 1, 0);
+  cv::Sobel(smooth, dy, CV_16S, 0, 1);
+  cv::Mat magnitude(gray.size(), CV_16U);
+  for (int y = 0; y < gray.rows; ++y) {
+    for (int x = 0; x < gray.cols; ++x) {
+      const int gx = dx.at<short>(y, x);
+      const int gy = dy.at<short>(y, x);
+      magnitude.at<ushort>(y, x) =
+          static_cast<ushort>(std::lround(std::sqrt(static_cast<double>(gx * gx + gy * gy))));
+    }
+  }
+  return magnitude;
+}
+
+// The board with its margin as a convex outline in the reduced image, filled with 0 in a mask of 1.
+cv::Mat BackgroundMask(const cv::Size& size,
+                       double reduction,
+                       const BoardPose& pose_camera,
+                       const BoardSpec& board,
+                       const CameraModel& camera,
+                       double margin_m) {
+  cv::Mat mask(size, CV_8U, cv::Scalar(1));
+  const Eigen::Isometry3d T_camera_board = TransformFromPose(pose_camera);
+  const double x_m = board.width_m / 2 + margin_m;
+  const double y_m = board.height_m / 2 + margin_m;
+  std::vector<cv::Point> outline;
+  for (const Eigen::Vector3d& corner : {Eigen::Vector3d(-x_m, -y_m, 0),
+                                        Eigen::Vector3d(x_m, -y_m, 0),
+                                        Eigen::Vector3d(x_m, y_m, 0),
+                                        Eigen::Vector3d(-x_m, y_m, 0)}) {
+    const Eigen::Vector3d corner_camera_m = T_camera_board * corner;
+    if (!camera.IsInFront(corner_camera_m)) continue;
+    const Eigen::Vector2d pixel = camera.Project(corner_camera_m) / reduction;
+    outline.emplace_back(static_cast<int>(std::lround(pixel.x())),
+                         static_cast<int>(std::lround(pixel.y())));
+  }
+  if (outline.size() >= 3) cv::fillConvexPoly(mask, outline, cv::Scalar(0));
+  return mask;
+}
+
+cv::Mat RankOf(const cv::Mat& magnitude, const cv::Mat& mask) {
+  std::array<int, 65536> counts{};
+  int num_counted = 0;
+  for (int y = 0; y < magnitude.rows; ++y) {
+    for (int x = 0; x < magnitude.cols; ++x) {
+      if (mask.at<uchar>(y, x) == 0) continue;
+      ++counts[magnitude.at<ushort>(y, x)];
+      ++num_counted;
+    }
+  }
+  std::array<uchar, 65536> rank_of{};
+  int num_weaker = 0;
+  for (std::size_t value = 0; value < counts.size(); ++value) {
+    rank_of[value] =
+        static_cast<uchar>(1 + std::int64_t{254} * num_weaker / std::max(1, num_counted));
+    num_weaker += counts[value];
+  }
+  cv::Mat rank(magnitude.size(), CV_8U);
+  for (int y = 0; y < rank.rows; ++y) {
+    for (int x = 0; x < rank.cols; ++x) {
+      rank.at<uchar>(y, x) =
+          mask.at<uchar>(y, x) == 0 ? uchar{0} : rank_of[magnitude.at<ushort>(y, x)];
+    }
+  }
+  return rank;
+}
+
+}  // namespace
+
+std::vector<std::string> SceneViewOptions::Problems() const {
+  std::vector<std::string> problems;
+  const auto require = [&problems](bool is_met, const char* rule, double value) {
+    if (is_met) return;
+    std::ostringstream text;
+    text << rule << ", is " << value;
+    problems.push_back(text.str());
+  };
+  require(min_jump_m > 0, "min_jump_m must be positive", min_jump_m);
+  require(max_step_rad > 0, "max_step_rad must be positive", max_step_rad);
+  require(board_margin_m >= 0, "board_margin_m must not be negative", board_margin_m);
+  require(min_range_m >= 0, "min_range_m must not be negative", min_range_m);
+  require(max_image_width_px >= 16, "max_image_width_px must be at least 16", max_image_width_px);
+  require(image_blur_px > 0, "image_blur_px must be positive", image_blur_px);
+  return problems;
+}
+
+SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
+                        const cv::Mat& image,
+                        const BoardSample& sample,
+                        const BoardSpec& board,
+                        const CameraModel& camera,
+                        const SceneViewOptions& options) {
+  const auto problems = options.Problems();
+  if (!problems.empty()) throw std::invalid_argument("SceneViewOptions: " + problems.front());
+  if (image.cols != camera.width_px || image.rows != camera.height_px || image.depth() != CV_8U) {
+    throw std::invalid_argument("MakeSceneView: the image is not of the camera's size");
+  }
+  SceneView view;
+  view.edges_lidar_m = WithoutBoard(
+      DepthEdges(cloud_lidar_m, options), sample.lidar.pose, board, options.board_margin_m);
+  const cv::Mat gray = ReducedGray(image, options.max_image_width_px);
+  view.reduction = static_cast<double>(image.cols) / gray.cols;
+  const cv::Mat mask = BackgroundMask(
+      gray.size(), view.reduction, sample.camera.pose, board, camera, options.board_margin_m);
+  view.edge_rank = RankOf(GradientMagnitude(gray, options.image_blur_px), mask);
+  return view;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,217 @@
+#include "core/assessment/diagnosis.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/board/planar_pose.hpp"
+#include "core/estimation/refine.hpp"
+#include "support/synthetic_samples.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+/// A session of 30 poses with a VLP-16's noise; what was given may differ from what is true.
+class Session {
+ public:
+  Session() : samples_(test::SynthesizeSamples(Noisy())) {}
+  explicit Session(const test::SyntheticSamplesOptions& options)
+      : samples_(test::SynthesizeSamples(options)) {}
+
+  static test::SyntheticSamplesOptions Noisy() {
+    test::SyntheticSamplesOptions options;
+    options.lidar_rotation_noise_rad = 0.005;
+    options.lidar_centre_noise_m = 0.003;
+    options.edge_noise_m = 0.005;
+    return options;
+  }
+
+  /// The diagnosis of what a calibration with the given board and camera makes of the true ones.
+  Diagnosis Run() {
+    test::Random random(7);
+    for (BoardSample& sample : samples_) SeeByCamera(&sample, &random);
+    const auto samples = test::Pointers(samples_);
+    const RefinedExtrinsic refined =
+        RefineExtrinsic(samples, given_camera, test::TestExtrinsic(), {});
+    EXPECT_TRUE(refined.IsUsable());
+    return Diagnose(
+        samples, num_inconsistent, given_board, given_camera, refined.T_camera_lidar, {});
+  }
+
+  /// Every range reads too long by this.
+  void OffsetRanges(double offset_m) {
+    for (BoardSample& sample : samples_) {
+      BoardPose& pose = sample.lidar.pose;
+      pose.centre_m *= 1 + offset_m / pose.centre_m.norm();
+      for (Eigen::Vector3d& corner : pose.corners_m) corner *= 1 + offset_m / corner.norm();
+    }
+  }
+  std::vector<BoardSample>& samples() { return samples_; }
+
+  BoardSpec true_board = test::TestBoard();
+  BoardSpec given_board = test::TestBoard();
+  CameraModel true_camera = test::TestCamera();
+  CameraModel given_camera = test::TestCamera();
+  int num_inconsistent = 0;
+
+ private:
+  void SeeByCamera(BoardSample* sample, test::Random* random) const {
+    const Eigen::Isometry3d T_camera_board = TransformFromPose(sample->camera.pose);
+    sample->camera.corners_px.clear();
+    for (const Eigen::Vector3d& corner : true_board.InnerCornersBoardM()) {
+      const Eigen::Vector3d corner_camera_m = T_camera_board * corner;
+      const Eigen::Vector2d noise_px(random->Normal(), random->Normal());
+      sample->camera.corners_px.push_back(true_camera.Project(corner_camera_m) + 0.1 * noise_px);
+    }
+    const auto fit =
+        FitPlanarPose(given_camera, given_board.InnerCornersBoardM(), sample->camera.corners_px);
+    ASSERT_TRUE(fit);
+    sample->camera.pose = PoseFromTransform(fit->T_camera_board, given_board);
+  }
+
+  std::vector<BoardSample> samples_;
+};
+
+std::string FirstCause(const Diagnosis& diagnosis) {
+  return diagnosis.findings.empty() ? "none" : diagnosis.findings[0].cause;
+}
+
+TEST(Diagnose, FindsNothingInACleanSession) {
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    test::SyntheticSamplesOptions options = Session::Noisy();
+    options.seed = seed;
+    const Diagnosis diagnosis = Session(options).Run();
+    EXPECT_THAT(diagnosis.findings, IsEmpty()) << seed << ": " << diagnosis.findings[0].text;
+  }
+}
+
+TEST(Diagnose, FindsAWrongFocalLength) {
+  Session session;
+  session.given_camera.fx_px *= 1.02;
+  session.given_camera.fy_px *= 1.02;
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "focal length");
+  const Finding& finding = diagnosis.findings[0];
+  // True = given * (1 + value): 1 / 1.02 - 1. The fit is linear about it: a tenth of it is left.
+  EXPECT_NEAR(finding.value, -1.96, 3 * finding.standard_error + 0.1);
+  EXPECT_THAT(finding.text, AllOf(HasSubstr("too long"), HasSubstr("held-out error")));
+  EXPECT_GT(finding.explained, 0.1);
+  // What is left is noise: 3 mm an axis, 4.8 mm in space, and a little for the parameters.
+  EXPECT_LT(finding.held_out_after_mm, 6);
+  EXPECT_GT(finding.held_out_before_mm, 8);
+}
+
+TEST(Diagnose, FindsAWrongPrincipalPoint) {
+  Session session;
+  session.given_camera.cx_px -= 60;
+  session.given_camera.cy_px += 30;
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "principal point");
+  const Finding& finding = diagnosis.findings[0];
+  puts(finding.text.c_str());
+  EXPECT_NEAR(finding.value, 67, 3 * finding.standard_error + 2);
+}
+
+TEST(Diagnose, FindsSquaresThatWereMisMeasured) {
+  Session session;
+  session.given_board.square_m *= 1.02;
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "board's squares");
+  EXPECT_NEAR(diagnosis.findings[0].value, -1.96, 3 * diagnosis.findings[0].standard_error + 0.1);
+}
+
+TEST(Diagnose, FindsAnOutlineThatWasMisMeasured) {
+  Session session;
+  session.given_board.width_m += 0.04;
+  session.given_board.height_m += 0.04;
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "board's outline");
+  EXPECT_NEAR(diagnosis.findings[0].value, 40, 2);  // 5 mm of noise over 120 edges
+}
+
+TEST(Diagnose, FindsARangeOffset) {
+  Session session;
+  session.OffsetRanges(0.05);
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "lidar range offset");
+  EXPECT_NEAR(diagnosis.findings[0].value, 50, 3 * diagnosis.findings[0].standard_error + 2);
+}
+
+TEST(Diagnose, FindsTheSampleThatMoved) {
+  Session session;
+  for (Eigen::Vector3d* point : {&session.samples()[4].lidar.pose.centre_m,
+                                 &session.samples()[4].lidar.pose.corners_m[0],
+                                 &session.samples()[4].lidar.pose.corners_m[1],
+                                 &session.samples()[4].lidar.pose.corners_m[2],
+                                 &session.samples()[4].lidar.pose.corners_m[3]}) {
+    *point += Eigen::Vector3d(0.0, 0.05, 0.0);
+  }
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "moving sample");
+  EXPECT_THAT(diagnosis.findings, SizeIs(1));
+  EXPECT_THAT(diagnosis.findings[0].text, HasSubstr("sample 5 is"));
+}
+
+TEST(Diagnose, SaysThatSamplesContradictTheOthers) {
+  Session session;
+  session.num_inconsistent = 3;
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "moving sample");
+  EXPECT_THAT(diagnosis.findings[0].text, HasSubstr("3 of 33 samples"));
+}
+
+TEST(Diagnose, FindsTooFewPoses) {
+  test::SyntheticSamplesOptions options = Session::Noisy();
+  options.num_samples = 5;
+  EXPECT_EQ(FirstCause(Session(options).Run()), "too few or too similar poses");
+}
+
+TEST(Diagnose, FindsPosesThatAreTooSimilar) {
+  test::SyntheticSamplesOptions options = Session::Noisy();
+  options.max_tilt_rad = 0.05;
+  options.spread = 0.1;
+  const Diagnosis diagnosis = Session(options).Run();
+  ASSERT_EQ(FirstCause(diagnosis), "too few or too similar poses");
+}
+
+TEST(Diagnose, FindsTwoFaultsAtOnce) {
+  Session session;
+  session.given_camera.fx_px *= 1.02;
+  session.given_camera.fy_px *= 1.02;
+  session.OffsetRanges(0.05);
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_THAT(diagnosis.findings, SizeIs(2));
+  EXPECT_THAT((std::vector<std::string>{diagnosis.findings[0].cause, diagnosis.findings[1].cause}),
+              ::testing::UnorderedElementsAre("focal length", "lidar range offset"));
+}
+
+TEST(Diagnose, SaysWhatItCannotJudgeWithoutCorners) {
+  const auto samples = test::SynthesizeSamples(Session::Noisy());
+  const Diagnosis diagnosis = Diagnose(
+      test::Pointers(samples), 0, test::TestBoard(), test::TestCamera(), test::TestExtrinsic(), {});
+  EXPECT_THAT(diagnosis.findings, IsEmpty());
+  EXPECT_THAT(diagnosis.not_judged, ::testing::Contains(HasSubstr("focal length")));
+  EXPECT_THAT(diagnosis.not_judged, ::testing::Contains(HasSubstr("time offset")));
+}
+
+TEST(Diagnose, NoSamplesAreTooFewPoses) {
+  EXPECT_EQ(FirstCause(Diagnose(
+                {}, 0, test::TestBoard(), test::TestCamera(), Eigen::Isometry3d::Identity(), {})),
+            "too few or too similar poses");
+}
+
+TEST(DiagnosisOptions, NamesEachProblem) {
+  DiagnosisOptions options;
+  options.min_held_out_gain = 0;
+  options.max_outlier_factor = -1;
+  EXPECT_THAT(options.Problems(),
+              ::testing::ElementsAre("min_held_out_gain must be positive, is 0",
+                                     "max_outlier_factor must be positive, is -1"));
+}
+
+}  // namespace
+}  // namespace voqcal

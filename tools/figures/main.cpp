@@ -7,5 +7,6 @@ int main(int argc, char** argv) {
   CLI::App app("Measures the accuracy of voqcal's algorithms over many seeded runs.",
                "voqcal_figures");
   app.require_subcommand(1);
+  voqcal::AddLidarDetection(&app);
   return voqcal::RunTool(&app, argc, argv, [] {});
 }

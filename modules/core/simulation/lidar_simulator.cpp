@@ -80,8 +80,9 @@ LidarSimulator::LidarSimulator(const SimulationOptions& options,
     solid_cones_.emplace_back(bound.centre_m, bound.radius_m, options.beam_divergence_rad);
   }
   const KeyedNoise noise(options.seed, NoiseUse::kRingBias);
+  const double ring_bias_m = HasRings(options.scan.pattern) ? options.ring_bias_m : 0.0;
   for (int emitter = 0; emitter < NumEmitters(options.scan.pattern); ++emitter) {
-    emitter_bias_m_.push_back(options.ring_bias_m * noise.Normals(emitter).first);
+    emitter_bias_m_.push_back(ring_bias_m * noise.Normals(emitter).first);
   }
   if (!IsRepeating(options.scan.pattern)) return;
   beams_ = BeamsOfSweep(options.scan, 0);

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/board/lidar_board.hpp"
+#include "core/simulation/lidar_simulator.hpp"
+#include "core/simulation/scan_pattern.hpp"
+
+namespace voqcal::test {
+
+/// Boards in halls full of people, tripods, doors, furniture and a second board of the wrong size.
+struct LidarDetectionOptions {
+  ScanPattern pattern = ScanPattern::kVlp16;
+  int num_sweeps = 100;
+  std::uint32_t seed = 1;  ///< Of the first hall; each further one has the next.
+  double min_distance_m = 1.5;
+  double max_distance_m = 8.0;
+};
+
+enum class SightingVerdict { kRight, kWrong, kMissed };
+
+/// What the detector made of one sweep, beside the truth.
+struct LidarSighting {
+  static constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
+
+  std::uint32_t seed = 0;  ///< Of the hall.
+  int board = 0;           ///< Which of the hall's boards.
+  Eigen::Isometry3d T_lidar_board = Eigen::Isometry3d::Identity();
+  BoardHits hits;
+  SightingVerdict verdict = SightingVerdict::kMissed;
+  std::string reason;  ///< Of a miss.
+  BoardPose found;     ///< What was taken for the board, if anything was.
+  double centre_error_m = kUnmeasured;
+  double normal_error_rad = kUnmeasured;
+  /// Squared errors by their covariance, over their number of dimensions: 1 in the mean if honest.
+  double centre_nees = kUnmeasured;
+  double normal_nees = kUnmeasured;
+
+  /// Enough of the sweep falls on the board to ask for its detection: 6 rings or 150 points.
+  bool IsEnough() const { return hits.num_rings >= 6 || hits.num_points >= 150; }
+  double DistanceM() const { return T_lidar_board.translation().norm(); }
+  std::string Line() const;  ///< All of it, for a list of failures.
+};
+
+/// Boards in any attitude up to 50 degrees from facing the lidar, each wholly within its view,
+/// hidden by nothing and 15 cm or more from anything. Wrong: the first candidate's centre is off by
+/// more than 10 cm, or its axes by more than 10 degrees (but for half a turn).
+std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options,
+                                            const LidarBoardOptions& detector);
+
+}  // namespace voqcal::test

@@ -1,0 +1,140 @@
+// lidar-detection: how often the board is found, how often something else is taken for it, and how
+// well errors agree with their covariance; for each scan pattern, among clutter, by range.
+
+#include "support/lidar_detection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "figures/figures.hpp"
+
+namespace voqcal {
+namespace {
+
+using test::LidarSighting;
+using test::SightingVerdict;
+
+std::vector<std::string> AllPatterns() {
+  return {"vlp16", "spinning_64", "spinning_128", "raster", "rosette"};
+}
+
+struct Flags {
+  std::vector<std::string> patterns = AllPatterns();
+  int num_runs = 200;
+  std::uint32_t seed = 1;
+  bool is_list = false;
+};
+
+// Of some sightings.
+struct Tally {
+  int num = 0;
+  int num_enough = 0;  // with so much on the board that it must be found
+  int num_found = 0;   // of those
+  int num_wrong = 0;
+  std::vector<double> centre_nees;
+  std::vector<double> normal_nees;
+  std::vector<double> centre_error_mm;
+  std::vector<double> normal_error_deg;
+
+  void Add(const LidarSighting& sighting) {
+    ++num;
+    if (sighting.IsEnough()) ++num_enough;
+    if (sighting.verdict == SightingVerdict::kWrong) ++num_wrong;
+    if (sighting.verdict != SightingVerdict::kRight) return;
+    if (sighting.IsEnough()) ++num_found;
+    centre_nees.push_back(sighting.centre_nees);
+    normal_nees.push_back(sighting.normal_nees);
+    centre_error_mm.push_back(1e3 * sighting.centre_error_m);
+    normal_error_deg.push_back(sighting.normal_error_rad * 180.0 / M_PI);
+  }
+};
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());  // NaN without values
+}
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return std::nan("");
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double Percent(int part, int whole) { return 100.0 * part / whole; }
+
+void PrintRow(const std::string& name, const Tally& tally) {
+  std::cout << std::left << std::setw(24) << name << std::right << std::fixed << std::setw(7)
+            << tally.num << std::setw(8) << tally.num_enough << std::setprecision(2) << std::setw(9)
+            << Percent(tally.num_found, tally.num_enough) << std::setw(9)
+            << Percent(tally.num_wrong, tally.num) << std::setw(9) << Mean(tally.centre_nees)
+            << std::setw(9) << Mean(tally.normal_nees) << std::setw(9)
+            << Median(tally.centre_error_mm) << std::setw(9) << Median(tally.normal_error_deg)
+            << '\n';
+}
+
+void RunPattern(ScanPattern pattern, const Flags& flags) {
+  test::LidarDetectionOptions options;
+  options.pattern = pattern;
+  options.num_sweeps = flags.num_runs;
+  options.seed = flags.seed;
+  constexpr std::array<double, 4> kRangesM = {1.5, 3.0, 5.0, 8.0};
+  Tally all;
+  std::array<Tally, kRangesM.size() - 1> by_range;
+  std::vector<std::string> failures;
+  for (const LidarSighting& sighting : test::SightLidarBoards(options, {})) {
+    all.Add(sighting);
+    const auto* const above =
+        std::upper_bound(kRangesM.begin() + 1, kRangesM.end() - 1, sighting.DistanceM());
+    by_range[above - kRangesM.begin() - 1].Add(sighting);
+    const bool is_failure = sighting.verdict == SightingVerdict::kWrong ||
+                            (sighting.verdict == SightingVerdict::kMissed && sighting.IsEnough());
+    if (is_failure) failures.push_back(sighting.Line());
+  }
+  PrintRow(ToString(pattern), all);
+  for (std::size_t i = 0; i < by_range.size(); ++i) {
+    std::ostringstream name;
+    name << "  " << kRangesM[i] << " to " << kRangesM[i + 1] << " m";
+    PrintRow(name.str(), by_range[i]);
+  }
+  if (!flags.is_list) return;
+  for (const std::string& failure : failures) std::cout << "    " << failure << '\n';
+}
+
+void Run(const Flags& flags) {
+  std::cout << "boards of 0.61 x 0.85 m at 1.5 to 8 m among clutter and a board of another size\n"
+            << "enough: 6 rings or 150 points on the board; found: of these; wrong: of all sweeps\n"
+            << std::left << std::setw(24) << "pattern, range" << std::right << std::setw(7)
+            << "sweeps" << std::setw(8) << "enough" << std::setw(9) << "found %" << std::setw(9)
+            << "wrong %" << std::setw(18) << "NEES ctr  normal" << std::setw(18)
+            << "ctr mm  nrm deg" << '\n'
+            << std::left << std::setw(24) << "asked" << std::right << std::setw(7) << ""
+            << std::setw(8) << "" << std::setw(9) << ">= 98" << std::setw(9) << "<= 0.1"
+            << std::setw(18) << "0.8 to 1.2, each" << '\n';
+  for (const std::string& name : flags.patterns) RunPattern(*ScanPatternFromString(name), flags);
+}
+
+}  // namespace
+
+void AddLidarDetection(CLI::App* app) {
+  const auto flags = std::make_shared<Flags>();
+  CLI::App* command = app->add_subcommand(
+      "lidar-detection", "The lidar board detector on simulated sweeps of every scan pattern");
+  command->add_option("--pattern", flags->patterns, "only these (default: all)")
+      ->check(CLI::IsMember(AllPatterns()));
+  command->add_option("--runs", flags->num_runs, "sweeps of each pattern (default 200)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--seed", flags->seed, "of the first hall; ten sweeps in each (default 1)");
+  command->add_flag("--list", flags->is_list, "list each miss and each wrong one");
+  command->callback([flags] { Run(*flags); });
+}
+
+}  // namespace voqcal

@@ -33,12 +33,15 @@ function(voqcal_library name)
   target_link_libraries(${name} PUBLIC ${arg_LIBS})
 endfunction()
 
-# voqcal_program(NAME SOURCES main.cpp LIBS x y): one executable in bin/.
+# voqcal_program(NAME [NOT_INSTALLED] SOURCES main.cpp LIBS x y): one executable in bin/.
 function(voqcal_program name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "NOT_INSTALLED" "" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   voqcal_target_defaults(${name})
   target_link_libraries(${name} PRIVATE ${arg_LIBS})
+  if(NOT arg_NOT_INSTALLED)
+    install(TARGETS ${name} RUNTIME DESTINATION bin)
+  endif()
 endfunction()
 
 # voqcal_test(NAME SOURCES x_test.cpp LIBS x [LABELS l] [PROPERTIES p v ...]): one GoogleTest executable;

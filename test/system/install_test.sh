@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# install_test.sh BUILD: installs into a folder of its own; from there alone a module is launched, a short
+# rig runs live, and its recording is calibrated.
+set -euo pipefail
+build=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+unset VOQCAL_BIN
+cmake --install "$build" --prefix "$folder/voqcal" >/dev/null
+cd "$folder"
+
+for part in config/rigs/acfr_vlp16.yaml lcmtypes/image_t.lcm include/voqcal/image_t.hpp tools/spy; do
+  [ -s "voqcal/$part" ] || { echo "$part is not installed" >&2; exit 1; }
+done
+! grep -rlI "$(dirname "$build")" voqcal || { echo "names the source tree" >&2; exit 1; }
+
+sed 's/num_poses: 40/num_poses: 6/' voqcal/config/rigs/simulated_vlp16.yaml >rig.yaml
+status=0
+voqcal/tools/isolated timeout --signal=INT 3 voqcal/modules/voq_selector/launch rig.yaml || status=$?
+[ $status -eq 124 ] || { echo "launch ended by itself with $status" >&2; exit 1; }  # timeout ended it
+
+voqcal/tools/isolated voqcal/tools/run_rig rig.yaml --session live --record
+voqcal/bin/calibrate --rig rig.yaml --log live/raw.lcm --out offline
+cmp live/extrinsic.yaml offline/extrinsic.yaml

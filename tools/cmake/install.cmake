@@ -1,0 +1,36 @@
+# cmake --install, and cpack -G DEB: everything under one folder of its own, in the shape of the source
+# tree, so that the same scripts run in both. Programs are installed by voqcal_program().
+if(CMAKE_INSTALL_PREFIX_INITIALIZED_TO_DEFAULT)
+  set(CMAKE_INSTALL_PREFIX /opt/voqcal CACHE PATH "Where cmake --install puts voqcal" FORCE)
+endif()
+
+file(GLOB launch_scripts RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS modules/*/launch)
+foreach(script modules/launch_module ${launch_scripts})
+  get_filename_component(folder ${script} DIRECTORY)
+  install(PROGRAMS ${script} DESTINATION ${folder})
+endforeach()
+install(PROGRAMS tools/up tools/status tools/down tools/run_rig tools/record tools/spy tools/isolated
+                 tools/import_ros tools/export_mcap
+  DESTINATION tools)
+install(DIRECTORY tools/common/ DESTINATION tools/common FILES_MATCHING PATTERN *.sh)
+# Node.js fetches its libraries there: npm ci.
+install(DIRECTORY tools/node DESTINATION tools USE_SOURCE_PERMISSIONS
+  PATTERN node_modules EXCLUDE PATTERN test EXCLUDE)
+install(DIRECTORY config/rigs DESTINATION config)
+install(DIRECTORY lcmtypes/ DESTINATION lcmtypes FILES_MATCHING PATTERN *.lcm)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/lcmtypes/cpp/voqcal DESTINATION include)
+# For lcm-spy; not there without a JDK.
+install(DIRECTORY ${PROJECT_BINARY_DIR}/lib DESTINATION . FILES_MATCHING PATTERN *.jar)
+install(FILES README.md DESTINATION .)
+
+set(CPACK_PACKAGE_NAME voqcal)
+set(CPACK_PACKAGE_CONTACT "the voqcal developers <voqcal@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Extrinsic calibration of a camera against a lidar, over LCM")
+set(CPACK_PACKAGING_INSTALL_PREFIX /opt/voqcal)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # the libraries, by dpkg-shlibdeps
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "liblcm-bin, supervisor, iproute2")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-java, libjchart2d-java, default-jre, python3-jinja2, nodejs, npm")
+include(CPack)

@@ -5,15 +5,50 @@
 
 #include <system_error>
 
+#include "messaging/convert_assessment.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_result.hpp"
 #include "messaging/made_from.hpp"
 #include "rig/atomic_file.hpp"
 
 namespace voqcal {
+namespace {
+
+// An array of messages and its count.
+template <typename Part, typename Message>
+void FillArray(const std::vector<Part>& parts,
+               std::vector<Message>* messages,
+               std::int32_t* num_messages) {
+  for (const Part& part : parts) messages->push_back(ToMessage(part));
+  *num_messages = static_cast<std::int32_t>(messages->size());
+}
+
+void Fill(const CalibrationResult& result, assessment_t* assessment) {
+  assessment->averaged_in_sample = ToMessage(result.of_average);
+  assessment->refined_in_sample = ToMessage(result.in_sample);
+  assessment->refined_held_out = ToMessage(result.held_out);
+  assessment->sample_ids = result.used_ids;
+  assessment->num_samples = static_cast<std::int32_t>(result.used_ids.size());
+  for (const PoseScore& pose : result.held_out.poses) {
+    assessment->held_out_centre_px.push_back(pose.centre_px);
+    assessment->held_out_centre_mm.push_back(pose.centre_mm);
+  }
+  FillArray(result.held_out_by_cell, &assessment->image_cells, &assessment->num_image_cells);
+  FillArray(result.held_out_by_range, &assessment->ranges, &assessment->num_ranges);
+  FillArray(result.predicted, &assessment->predicted, &assessment->num_predicted);
+  assessment->scene_check = ToMessage(result.scene_check);
+  FillArray(result.diagnosis.findings, &assessment->findings, &assessment->num_findings);
+  assessment->not_judged = result.diagnosis.not_judged;
+  assessment->num_not_judged = static_cast<std::int32_t>(assessment->not_judged.size());
+}
+
+}  // namespace
 
 AssessorNode::AssessorNode(const Rig& rig, Bus* bus, const std::filesystem::path& session_folder)
-    : rig_(rig), bus_(*bus), session_folder_(session_folder) {
+    : rig_(rig),
+      bus_(*bus),
+      session_folder_(session_folder),
+      views_(rig, session_folder / kSamplesLogName) {
   std::error_code error;
   std::filesystem::create_directories(session_folder_, error);
   if (error) {
@@ -56,21 +91,13 @@ void AssessorNode::Assess() {
   result_.reset();
   if (assessment.problem.empty()) {
     result_ = Result();
-    assessment.averaged_in_sample = ToMessage(result_->of_average);
-    assessment.refined_in_sample = ToMessage(result_->in_sample);
-    assessment.refined_held_out = ToMessage(result_->held_out);
-    assessment.sample_ids = result_->used_ids;
-    assessment.num_samples = static_cast<std::int32_t>(result_->used_ids.size());
-    for (const PoseScore& pose : result_->held_out.poses) {
-      assessment.held_out_centre_px.push_back(pose.centre_px);
-      assessment.held_out_centre_mm.push_back(pose.centre_mm);
-    }
+    Fill(*result_, &assessment);
     WriteFileAtomically(session_folder_ / kResultName, ToYaml(*result_));
   }
   assessment_ = std::move(assessment);
 }
 
-CalibrationResult AssessorNode::Result() const {
+CalibrationResult AssessorNode::Result() {
   const std::vector<BoardSample> all = FromMessage(*samples_);
   const std::vector<const BoardSample*> samples = SamplesWithout(all, averaged_->inconsistent_ids);
 
@@ -87,6 +114,21 @@ CalibrationResult AssessorNode::Result() const {
       samples, rig_.camera, result.averaged.T_camera_lidar, rig_.extrinsic_refiner);
   result.in_sample = ScoreScene(samples, rig_.camera, result.T_camera_lidar);
   result.of_average = ScoreScene(samples, rig_.camera, result.averaged.T_camera_lidar);
+
+  result.held_out_by_cell = BinByImageCell(samples, result.held_out, rig_.camera);
+  result.held_out_by_range = BinByRange(samples, result.held_out);
+  result.predicted = PredictErrors(result.T_camera_lidar, result.covariance, rig_.camera);
+  result.scene_check = CheckScene(views_.Of(samples),
+                                  rig_.camera,
+                                  result.T_camera_lidar,
+                                  result.averaged.T_camera_lidar,
+                                  rig_.scene_check);
+  result.diagnosis = Diagnose(samples,
+                              averaged_->num_inconsistent,
+                              rig_.board,
+                              rig_.camera,
+                              result.T_camera_lidar,
+                              rig_.diagnosis);
 
   result.used_ids = IdsOf(samples);
   for (std::size_t i = 0; i < averaged_->inconsistent_ids.size(); ++i) {

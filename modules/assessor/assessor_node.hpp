@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "assessor/session_views.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/result_file.hpp"
@@ -19,7 +20,8 @@ namespace voqcal {
 inline constexpr char kResultName[] = "extrinsic.yaml";
 
 /// CALIB_SAMPLES, EXTRINSIC_AVERAGED and EXTRINSIC_REFINED in, CALIB_ASSESSMENT and extrinsic.yaml
-/// out: scores both extrinsics over the whole scene, the refined one also by leave-one-out.
+/// out: scores both extrinsics over the whole scene, the refined one also by leave-one-out, checks
+/// it on the scenes that samples.lcm keeps, and says what is likely wrong.
 class AssessorNode : public Module {
  public:
   /// @param bus  borrowed; must outlive the node.
@@ -38,11 +40,12 @@ class AssessorNode : public Module {
 
  private:
   void Assess();
-  CalibrationResult Result() const;
+  CalibrationResult Result();
 
   Rig rig_;
   Bus& bus_;
   std::filesystem::path session_folder_;
+  SessionViews views_;
   std::optional<samples_t> samples_;
   std::optional<extrinsic_averaged_t> averaged_;
   std::optional<extrinsic_refined_t> refined_;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "rig/assessment_yaml.hpp"
 #include "rig/atomic_file.hpp"
 #include "rig/number_text.hpp"
 #include "rig/transform_yaml.hpp"
@@ -47,25 +48,8 @@ std::string Transform(const Eigen::Isometry3d& T, const std::string& indent) {
          indent + "translation_m: " + List(translation_m) + "\n";
 }
 
-std::string SpreadLine(const std::string& name, const Spread& spread) {
-  return "    " + name + ": {mean: " + NumberText(spread.mean) +
-         ", std: " + NumberText(spread.std) + ", max: " + NumberText(spread.max) + "}\n";
-}
-
 std::string Score(const std::string& name, const std::string& note, const SceneScore& score) {
-  return "  " + name + ":  # " + note + "\n" + SpreadLine("centre_px", score.centre_px) +
-         SpreadLine("centre_mm", score.centre_mm) + SpreadLine("corner_mm", score.corner_mm) +
-         SpreadLine("normal_deg", score.normal_deg);
-}
-
-std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    const bool is_control = static_cast<unsigned char>(c) < 0x20;
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += is_control ? ' ' : c;
-  }
-  return quoted + '"';
+  return "  " + name + ":  # " + note + "\n" + ScoreYaml(score);
 }
 
 std::string Averaged(const AveragedPart& averaged) {
@@ -86,8 +70,8 @@ std::string Samples(const CalibrationResult& result) {
   }
   std::string rejected = result.rejected.empty() ? " []\n" : "\n";
   for (const RejectedSample& sample : result.rejected) {
-    rejected +=
-        "    - {id: " + std::to_string(sample.id) + ", reason: " + Quoted(sample.reason) + "}\n";
+    rejected += "    - {id: " + std::to_string(sample.id) +
+                ", reason: " + QuotedYaml(sample.reason) + "}\n";
   }
   return "samples:\n  used: [" + used + "]\n  rejected:" + rejected;
 }
@@ -135,17 +119,20 @@ std::string ToYaml(const CalibrationResult& result) {
          "side\n"
          "covariance:\n" +
          covariance + Averaged(result.averaged) +
-         "lidar_bias: {status: " + Quoted(result.lidar_bias.status) + "}\n" +
+         "lidar_bias: {status: " + QuotedYaml(result.lidar_bias.status) + "}\n" +
          "# reprojection error of the board's centre in pixels, and times the metres per pixel at "
          "the\n"
          "# board; mean distance of the board's corners; angle between the normals\n"
          "scores:\n" +
          Score("held_out", "each sample by the extrinsic refined without it", result.held_out) +
          Score("in_sample", "by the extrinsic made from these very samples", result.in_sample) +
-         Score("average", "the VOQ average, all samples", result.of_average) + Samples(result) +
-         kMadeFromNote + "made_from:\n  log_sha256: " + Quoted(made_from.log_sha256) +
-         "\n  rig_sha256: " + Quoted(made_from.rig_sha256) +
-         "\n  version: " + Quoted(made_from.version) + "\n";
+         Score("average", "the VOQ average, all samples", result.of_average) +
+         BinsYaml("held_out_by_image_cell", result.held_out_by_cell) +
+         BinsYaml("held_out_by_range", result.held_out_by_range) + PredictedYaml(result.predicted) +
+         SceneCheckYaml(result.scene_check) + DiagnosisYaml(result.diagnosis) + Samples(result) +
+         kMadeFromNote + "made_from:\n  log_sha256: " + QuotedYaml(made_from.log_sha256) +
+         "\n  rig_sha256: " + QuotedYaml(made_from.rig_sha256) +
+         "\n  version: " + QuotedYaml(made_from.version) + "\n";
 }
 
 Eigen::Isometry3d ReadExtrinsic(const std::filesystem::path& path) {

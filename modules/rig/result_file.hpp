@@ -7,6 +7,10 @@
 
 #include <Eigen/Geometry>
 
+#include "core/assessment/diagnosis.hpp"
+#include "core/assessment/predicted_error.hpp"
+#include "core/assessment/scene_check.hpp"
+#include "core/assessment/score_bins.hpp"
 #include "core/assessment/scores.hpp"
 #include "core/geometry/rigid.hpp"
 
@@ -47,9 +51,14 @@ struct CalibrationResult {
   Matrix6d covariance = Matrix6d::Zero();
   AveragedPart averaged;
   LidarBias lidar_bias;
-  SceneScore held_out;    ///< Each sample by the extrinsic refined without it.
-  SceneScore in_sample;   ///< Flatters: the same samples made the extrinsic.
-  SceneScore of_average;  ///< The VOQ average on all samples.
+  SceneScore held_out;                      ///< Each sample by the extrinsic refined without it.
+  SceneScore in_sample;                     ///< Flatters: the same samples made the extrinsic.
+  SceneScore of_average;                    ///< The VOQ average on all samples.
+  std::vector<ScoreBin> held_out_by_cell;   ///< Of the image.
+  std::vector<ScoreBin> held_out_by_range;  ///< From the camera.
+  std::vector<PredictedError> predicted;    ///< Out to 50 m.
+  SceneCheck scene_check;
+  Diagnosis diagnosis;
   std::vector<std::int64_t> used_ids;
   std::vector<RejectedSample> rejected;
   MadeFrom made_from;

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/assessment/scores.hpp"
+#include "core/assessment/diagnosis.hpp"
+#include "core/assessment/scene_check.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/board/camera_board.hpp"
 #include "core/board/lidar_board.hpp"
@@ -83,6 +84,8 @@ struct Rig {
   SetExtrinsicOptions extrinsic_estimator;
   AverageOptions average;  ///< Under extrinsic_estimator.
   RefineOptions extrinsic_refiner;
+  SceneCheckOptions scene_check;  ///< Under assessor.
+  DiagnosisOptions diagnosis;     ///< Under assessor.
 };
 
 /// Reads and checks a rig file (YAML). Options that are not given keep their defaults; board and

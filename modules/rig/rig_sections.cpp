@@ -235,6 +235,45 @@ void ReadExtrinsicRefiner(YamlSection* top, RefineOptions* options) {
   Finish(*options, &section);
 }
 
+void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
+  YamlSection section = assessor->Section("scene_check");
+  section.Read("min_edges", &options->min_edges);
+  section.Read("min_contrast", &options->min_contrast);
+  section.ReadDegrees("max_sigma_deg", &options->max_sigma_rad);
+  section.ReadDegrees("tolerance_deg", &options->tolerance_rad);
+  section.Read("num_sigmas", &options->num_sigmas);
+  section.Read("min_jump_m", &options->view.min_jump_m);
+  section.ReadDegrees("max_step_deg", &options->view.max_step_rad);
+  section.Read("board_margin_m", &options->view.board_margin_m);
+  section.Read("min_range_m", &options->view.min_range_m);
+  section.Read("max_image_width_px", &options->view.max_image_width_px);
+  section.Read("image_blur_px", &options->view.image_blur_px);
+  Finish(*options, &section);
+}
+
+void ReadDiagnosis(YamlSection* assessor, DiagnosisOptions* options) {
+  YamlSection section = assessor->Section("diagnosis");
+  section.Read("min_log_likelihood_gain", &options->min_log_likelihood_gain);
+  section.Read("min_held_out_gain", &options->min_held_out_gain);
+  section.Read("min_focal_scale", &options->min_focal_scale);
+  section.Read("min_principal_point_px", &options->min_principal_point_px);
+  section.Read("min_square_scale", &options->min_square_scale);
+  section.Read("min_range_offset_m", &options->min_range_offset_m);
+  section.Read("min_edge_error_m", &options->min_edge_error_m);
+  section.Read("max_outlier_factor", &options->max_outlier_factor);
+  section.Read("min_samples", &options->min_samples);
+  section.ReadDegrees("min_tilt_spread_deg", &options->min_tilt_spread_rad);
+  section.ReadDegrees("min_view_spread_deg", &options->min_view_spread_rad);
+  Finish(*options, &section);
+}
+
+void ReadAssessor(YamlSection* top, SceneCheckOptions* scene_check, DiagnosisOptions* diagnosis) {
+  YamlSection section = top->Section("assessor");
+  ReadSceneCheck(&section, scene_check);
+  ReadDiagnosis(&section, diagnosis);
+  section.RefuseUnknownKeys();
+}
+
 }  // namespace
 
 void ReadRigSections(YamlDocument* document, Rig* rig) {
@@ -254,6 +293,7 @@ void ReadRigSections(YamlDocument* document, Rig* rig) {
   ReadVoqSelector(&top, &rig->voq_selector, &rig->consistency);
   ReadExtrinsicEstimator(&top, &rig->extrinsic_estimator, &rig->average);
   ReadExtrinsicRefiner(&top, &rig->extrinsic_refiner);
+  ReadAssessor(&top, &rig->scene_check, &rig->diagnosis);
   top.RefuseUnknownKeys();
 }
 

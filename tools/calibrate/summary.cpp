@@ -42,6 +42,42 @@ std::string TransformLines(const CalibrationResult& result) {
                 kDegPerRad * sigma[2]);
 }
 
+std::string SceneLines(const CalibrationResult& result) {
+  std::string text = "by part of the scene, held-out centres\n";
+  for (const auto* bins : {&result.held_out_by_cell, &result.held_out_by_range}) {
+    std::string line;
+    for (const ScoreBin& bin : *bins) {
+      line += (line.empty() ? "  " : "; ") + bin.name +
+              Format(" %.1f mm (%zu)", bin.score.centre_mm.mean, bin.score.poses.size());
+    }
+    text += line + "\n";
+  }
+  text += "predicted, 1 sigma, middle of the image (worst corner)\n ";
+  for (const PredictedError& error : result.predicted) {
+    text += Format(" %.0f m: %.1f px (%.1f);", error.range_m, error.centre_px, error.corner_px);
+  }
+  text.back() = '\n';
+  const SceneCheck& check = result.scene_check;
+  text += "scene check, without the board\n  " + ToString(check.verdict);
+  if (!check.probes.empty()) {
+    text += Format(": score %.3f, averaged %.3f, best %.3f",
+                   check.score,
+                   check.averaged_score,
+                   check.peak_score);
+  }
+  return text + "; " + check.reason + "\n";
+}
+
+std::string DiagnosisLines(const Diagnosis& diagnosis) {
+  std::string text = "what is likely wrong\n";
+  if (diagnosis.findings.empty()) text += "  nothing was found\n";
+  for (const Finding& finding : diagnosis.findings) {
+    text += "  " + finding.cause + ": " + finding.text + "\n";
+  }
+  for (const std::string& each : diagnosis.not_judged) text += "  (not judged: " + each + ")\n";
+  return text;
+}
+
 }  // namespace
 
 std::string Summary(const SceneScore& score) {
@@ -66,6 +102,7 @@ std::string Summary(const CalibrationResult& result) {
   text += "  averaged   " + Summary(result.of_average) + "   (" +
           std::to_string(result.averaged.num_kept) + " of " +
           std::to_string(result.averaged.num_sets) + " sets kept)\n";
+  text += SceneLines(result) + DiagnosisLines(result.diagnosis);
   for (const RejectedSample& rejected : result.rejected) {
     text += "left out\n  sample " + std::to_string(rejected.id) + ": " + rejected.reason + "\n";
   }

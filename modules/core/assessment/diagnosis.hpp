@@ -25,8 +25,9 @@ struct DiagnosisOptions {
   double min_edge_error_m = 0.02;  ///< Of the mean edge length; beams of finite width widen edges.
   double max_outlier_factor = 6;   ///< A sample so many times the median error off stands out.
   int min_samples = 8;             ///< Fewer are too few...
-  double min_tilt_spread_rad = 0.17;  ///< ...and normals that spread less (10 deg) too similar...
-  double min_view_spread_rad = 0.10;  ///< ...as are centres in one direction (RMS 6 deg).
+  double min_tilt_spread_rad =
+      0.1745329252;  ///< ...and normals that spread less (10 deg) too similar...
+  double min_view_spread_rad = 0.1047197551;  ///< ...as are centres in one direction (RMS 6 deg).
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;

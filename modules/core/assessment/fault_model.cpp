@@ -80,27 +80,30 @@ FaultEquation MakeEquation(const BoardSample& sample,
                            const CameraModel& camera,
                            const Eigen::Isometry3d& T_camera_lidar) {
   const BoardPose lidar = LidarPoseInCameraOrder(sample, T_camera_lidar);
-  const auto residual = [&](const Vector6d& delta, const FaultVector& fault) {
-    const Eigen::Isometry3d T_camera_board = CameraBoardWith(fault, sample, board, camera)
-                                                 .value_or(TransformFromPose(sample.camera.pose));
-    return Residual(PerturbLeft(T_camera_lidar, delta),
-                    LidarBoardWithout(fault[kRangeOffset], lidar),
-                    T_camera_board);
+  const auto camera_board = [&](const FaultVector& fault) {
+    return CameraBoardWith(fault, sample, board, camera)
+        .value_or(TransformFromPose(sample.camera.pose));
+  };
+  const Eigen::Isometry3d T_lidar_board = LidarBoardWithout(0, lidar);
+  const Eigen::Isometry3d T_camera_board = camera_board(FaultVector::Zero());
+  const auto moved = [&](const Vector6d& delta) {
+    return Residual(PerturbLeft(T_camera_lidar, delta), T_lidar_board, T_camera_board);
+  };
+  const auto faulty = [&](const FaultVector& fault) {
+    return Residual(
+        T_camera_lidar, LidarBoardWithout(fault[kRangeOffset], lidar), camera_board(fault));
   };
   FaultEquation equation;
   equation.sample_id = sample.id;
-  equation.r = residual(Vector6d::Zero(), FaultVector::Zero());
+  equation.r = moved(Vector6d::Zero());
   for (int i = 0; i < kNumExtrinsicParameters; ++i) {
     const Vector6d step = kExtrinsicStep * Vector6d::Unit(i);
-    equation.J.col(i) =
-        (residual(step, FaultVector::Zero()) - residual(-step, FaultVector::Zero())) /
-        (2 * kExtrinsicStep);
+    equation.J.col(i) = (moved(step) - moved(-step)) / (2 * kExtrinsicStep);
   }
   for (int i = 0; i < kNumFaultParameters; ++i) {
     const FaultVector step = kFaultSteps[i] * FaultVector::Unit(i);
     equation.J.col(kNumExtrinsicParameters + i) =
-        (residual(Vector6d::Zero(), step) - residual(Vector6d::Zero(), -step)) /
-        (2 * kFaultSteps[i]);
+        (faulty(step) - faulty(-step)) / (2 * kFaultSteps[i]);
   }
   return equation;
 }
@@ -213,14 +216,6 @@ std::vector<FaultEquation> MakeFaultEquations(const std::vector<const BoardSampl
     equations.push_back(MakeEquation(*sample, board, camera, T_camera_lidar));
   }
   return equations;
-}
-
-double FaultFit::SumOfSquares(const NoiseLevels& noise_levels) const {
-  double sum = 0;
-  for (std::size_t kind = 0; kind < squares.size(); ++kind) {
-    sum += squares[kind] / (noise_levels[kind] * noise_levels[kind]);
-  }
-  return sum;
 }
 
 FaultFit FitFaults(const std::vector<FaultEquation>& equations,

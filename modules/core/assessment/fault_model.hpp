@@ -64,8 +64,6 @@ struct FaultFit {
   double mean_error_m = 0;           ///< Of the centres, in space.
   double mean_held_out_error_m = 0;  ///< The same, each sample left out of the fit in turn.
 
-  /// Sum over kinds of squared residuals against `noise`, for the share that a fault explains.
-  double SumOfSquares(const NoiseLevels& noise) const;
   std::array<double, kNumResidualKinds> squares{};  ///< Sums of squares by kind.
 };
 

@@ -14,11 +14,12 @@ namespace voqcal {
 
 /// When the scene's own edges contradict an extrinsic.
 struct SceneCheckOptions {
-  int min_edges = 300;            ///< Fewer depth edges in the image judge nothing.
-  double min_contrast = 0.05;     ///< The peak's score is that much above far perturbations'.
-  double max_sigma_rad = 0.0087;  ///< An axis known no better than this (0.5 deg) is left open.
+  int min_edges = 300;         ///< Fewer depth edges in the image judge nothing.
+  double min_contrast = 0.05;  ///< The peak's score is that much above far perturbations'.
+  double max_sigma_rad =
+      0.0087266463;  ///< An axis known no better than this (0.5 deg) is left open.
   /// An offset about an axis disagrees beyond this (0.2 deg), half a pixel of a sweep...
-  double tolerance_rad = 0.0035;
+  double tolerance_rad = 0.0034906585;
   double num_sigmas = 3.0;  ///< ...and beyond so many of its standard errors.
   SceneViewOptions view;
 

@@ -149,6 +149,19 @@ TEST_F(AssessorNodeTest, OrderOfArrivalDoesNotMatter) {
   EXPECT_EQ(ReadWholeFile(other_folder.path() / kResultName), ReadWholeFile(file_));
 }
 
+TEST_F(AssessorNodeTest, SaysThatThereIsNoSceneAndWhatItFound) {
+  RunStagesBefore(test::NoisySamples(5), 5);
+  Step(&node_);
+  ASSERT_THAT(sent(), SizeIs(1));
+  EXPECT_EQ(sent()[0].scene_check.verdict, "not judged");
+  EXPECT_THAT(sent()[0].scene_check.reason, HasSubstr("no scene"));
+  ASSERT_EQ(sent()[0].num_findings, 1);
+  EXPECT_EQ(sent()[0].findings[0].cause, "too few or too similar poses");
+  EXPECT_EQ(sent()[0].num_predicted, 6);
+  EXPECT_GE(sent()[0].num_image_cells, 1);
+  EXPECT_GE(sent()[0].num_ranges, 1);
+}
+
 TEST_F(AssessorNodeTest, NamesASessionFolderThatCannotBeMade) {
   const auto in_the_way = folder_.Write("file", "");
   EXPECT_THAT(test::ErrorOf([&] { AssessorNode node(rig_, &bus_, in_the_way / "session"); }),

@@ -48,6 +48,25 @@ TEST_F(OfflineRunTest, CalibratesATinyLogTwiceToTheSameBytes) {
             ReadWholeFile(session("second") / kResultName));
 }
 
+TEST_F(OfflineRunTest, ChecksTheSceneAndDoesSoAgainFromTheSamplesAlone) {
+  const Rig rig = test::TinySimulatedRig();
+  test::WriteStopsLog(rig, log_);
+  {
+    OfflineRun run(rig, session("recording"));
+    run.FeedLog(log_, NoProgress);
+    run.Finish(/*is_collecting_only=*/false);
+    ASSERT_TRUE(run.assessor().result()) << run.assessor().problem();
+    EXPECT_EQ(run.assessor().result()->scene_check.num_scenes, rig.simulation.num_poses);
+  }
+  std::filesystem::create_directory(session("again"));
+  std::filesystem::copy_file(session("recording") / kSamplesLogName,
+                             session("again") / kSamplesLogName);
+  OfflineRun again(rig, session("again"));
+  again.Finish(/*is_collecting_only=*/false);
+  EXPECT_EQ(ReadWholeFile(session("again") / kResultName),
+            ReadWholeFile(session("recording") / kResultName));
+}
+
 TEST_F(OfflineRunTest, CollectsOnlyIfAsked) {
   OfflineRun run(test::TinySimulatedRig(), session("s"));
   run.FeedSamples(test::SynthesizeSamples({}));

@@ -57,6 +57,45 @@ TEST(ToYaml, IsReadBackExactly) {
   EXPECT_EQ(yaml["made_from"]["rig_sha256"].as<std::string>(), "bb");
 }
 
+TEST(ToYaml, SaysWhatTheAssessmentFound) {
+  CalibrationResult result = SomeResult();
+  ScoreBin bin{"top left", {}};
+  bin.score.centre_mm.mean = 2.5;
+  bin.score.poses.resize(3);
+  result.held_out_by_cell = {bin};
+  result.predicted = {{10, 1.5, 12, 2.5, 14}};
+  result.scene_check.verdict = SceneVerdict::kDisagrees;
+  result.scene_check.reason = "its edges fit best elsewhere";
+  result.scene_check.score = 0.75;
+  result.scene_check.offset_rad = Eigen::Vector3d(0, M_PI / 180, 0);
+  SceneProbe probe;
+  probe.delta[2] = 0.5;
+  probe.score = 0.625;
+  result.scene_check.probes = {probe};
+  Finding finding;
+  finding.cause = "focal length";
+  finding.text = "given 2 % too \"long\"";
+  finding.value = -2;
+  finding.unit = "%";
+  result.diagnosis.findings = {finding};
+  result.diagnosis.not_judged = {"time offset: at rest"};
+  const YAML::Node yaml = YAML::Load(ToYaml(result));
+  EXPECT_EQ(yaml["scores"]["held_out_by_image_cell"][0]["where"].as<std::string>(), "top left");
+  EXPECT_EQ(yaml["scores"]["held_out_by_image_cell"][0]["samples"].as<int>(), 3);
+  EXPECT_EQ(yaml["scores"]["held_out_by_image_cell"][0]["centre_mm"].as<double>(), 2.5);
+  EXPECT_EQ(yaml["scores"]["held_out_by_range"].size(), 0U);
+  EXPECT_EQ(yaml["predicted_errors"][0]["corner_px"].as<double>(), 2.5);
+  EXPECT_EQ(yaml["scene_check"]["verdict"].as<std::string>(), "disagrees");
+  EXPECT_EQ(yaml["scene_check"]["score"]["refined"].as<double>(), 0.75);
+  EXPECT_NEAR(yaml["scene_check"]["best_turn_deg"][1].as<double>(), 1, 1e-12);
+  EXPECT_EQ(yaml["scene_check"]["perturbed"][0]["delta"][2].as<double>(), 0.5);
+  EXPECT_EQ(yaml["diagnosis"][0]["cause"].as<std::string>(), "focal length");
+  EXPECT_EQ(yaml["diagnosis"][0]["text"].as<std::string>(), "given 2 % too \"long\"");
+  EXPECT_FALSE(yaml["diagnosis"][0]["explained"]);  // does not apply
+  EXPECT_EQ(yaml["not_judged"][0].as<std::string>(), "time offset: at rest");
+  EXPECT_EQ(YAML::Load(ToYaml(SomeResult()))["diagnosis"].size(), 0U);
+}
+
 TEST(ToYaml, SaysWhereTheTransformLeads) {
   EXPECT_THAT(ToYaml(SomeResult()),
               HasSubstr("T_camera_lidar:  # p_camera = T_camera_lidar * p_lidar, metres"));

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/assessment/scene_view.hpp"
+#include "core/board/board_sample.hpp"
+#include "messaging/session_scenes.hpp"
+#include "rig/rig.hpp"
+
+namespace voqcal {
+
+/// The edges of each sample's scene, taken from the session's samples.lcm: one sweep and one image
+/// in memory at a time, each worked on once.
+class SessionViews {
+ public:
+  SessionViews(const Rig& rig, const std::filesystem::path& samples_log);
+
+  /// Of the samples that have a scene, in order. A log that is not there (the sample collector runs
+  /// on another machine) has none; a scene that cannot be read is left out with a warning.
+  std::vector<SceneView> Of(const std::vector<const BoardSample*>& samples);
+
+ private:
+  /// A new session on the same folder counts its samples anew, at other times.
+  using Key = std::pair<std::int64_t, std::int64_t>;  // id, utime
+
+  void ReadNew(const std::map<Key, const BoardSample*>& samples);
+  void Add(const SessionScene& scene, const Key& key, const BoardSample& sample);
+
+  Rig rig_;
+  std::filesystem::path samples_log_;
+  std::map<Key, SceneView> views_;
+};
+
+}  // namespace voqcal

@@ -22,7 +22,8 @@ std::optional<PointCloud> CloudOf(const pointcloud2_t& message, std::string* mis
 
 }  // namespace
 
-LidarBoardDetectorNode::LidarBoardDetectorNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
+LidarBoardDetectorNode::LidarBoardDetectorNode(const Rig& rig, Bus* bus)
+    : rig_(rig), bus_(*bus), background_(rig.lidar_board_detector.background) {
   bus_.Subscribe<pointcloud2_t>(rig_.channels.lidar_points,
                                 Queue::kEvery,
                                 [this](const pointcloud2_t& message) { OnPoints(message); });
@@ -32,16 +33,28 @@ void LidarBoardDetectorNode::OnPoints(const pointcloud2_t& message) {
   std::string miss;
   std::vector<LidarBoard> candidates;
   if (const auto cloud = CloudOf(message, &miss)) {
-    auto found = DetectLidarBoard(*cloud, rig_.board, rig_.lidar_board_detector);
+    auto found = Detect(*cloud);
     if (found) {
       candidates = std::move(*found);
+      Count("boards");
     } else {
       miss = ToString(found.error());
+      Count(ToString(found.error().miss));
     }
+  } else {
+    Count(miss);
   }
-  Count(miss.empty() ? "boards" : miss);
   bus_.Publish(rig_.channels.lidar_board,
                LidarBoardMessage(candidates, miss, message.utime, seq_++));
+}
+
+Expected<std::vector<LidarBoard>, NoLidarBoard> LidarBoardDetectorNode::Detect(
+    const PointCloud& cloud) {
+  const LidarBoardOptions& options = rig_.lidar_board_detector;
+  if (!options.background.is_used) return DetectLidarBoard(cloud, rig_.board, options);
+  auto found = DetectLidarBoard(cloud, rig_.board, options, &background_);
+  background_.Learn(cloud);
+  return found;
 }
 
 }  // namespace voqcal

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "core/board/lidar_board.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/rig.hpp"
@@ -21,9 +23,11 @@ class LidarBoardDetectorNode : public Module {
 
  private:
   void OnPoints(const pointcloud2_t& message);
+  Expected<std::vector<LidarBoard>, NoLidarBoard> Detect(const PointCloud& cloud);
 
   Rig rig_;
   Bus& bus_;
+  LidarBackground background_;
   std::int64_t seq_ = 0;
 };
 

@@ -182,6 +182,21 @@ void ReadLidarBoardDetector(YamlSection* top, LidarBoardOptions* options) {
     options->region_of_interest = region;
   }
   box.RefuseUnknownKeys();
+  section.Read("max_bend_m", &options->max_bend_m);
+  section.Read("thickness_m", &options->thickness_m);
+  section.Read("thickness_sigma_m", &options->thickness_sigma_m);
+  YamlSection beam = section.Section("beam");
+  beam.Read("spill_m", &options->beam.spill_m);
+  beam.Read("spill_sigma_m", &options->beam.spill_sigma_m);
+  beam.Read("blur_m", &options->beam.blur_m);
+  beam.Read("blur_per_m", &options->beam.blur_per_m);
+  beam.Read("hit_band_m", &options->beam.hit_band_m);
+  beam.RefuseUnknownKeys();
+  YamlSection background = section.Section("background");
+  background.Read("is_used", &options->background.is_used);
+  background.Read("memory_sweeps", &options->background.memory_sweeps);
+  background.Read("min_step_m", &options->background.min_step_m);
+  background.RefuseUnknownKeys();
   Finish(*options, &section);
 }
 

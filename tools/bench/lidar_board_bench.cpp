@@ -40,7 +40,7 @@ void DetectLidarBoardIn(benchmark::State& state) {
   }
   state.SetLabel(is_found ? "found" : "not found");
 }
-BENCHMARK(DetectLidarBoardIn)->Arg(28000)->Arg(131000)->Unit(benchmark::kMillisecond);
+BENCHMARK(DetectLidarBoardIn)->Arg(24000)->Arg(131000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace voqcal

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <set>
+#include <sstream>
+#include <string>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "core/board/board_bend.hpp"
 #include "core/board/outline_checks.hpp"
 #include "core/board/outline_edges.hpp"
 #include "core/board/outline_fit.hpp"
@@ -19,18 +23,16 @@ namespace {
 
 constexpr std::size_t kMinHits = 30;  // fewer cannot measure a board
 
-/// The beam across, measured on 30 sweeps of a VLP-16 (1.7 to 3.2 m): hits end 5 mm past the edge
-/// whatever the range, and beams turn from hit to miss within 3 to 4 mm. Doubling or halving any of
-/// these moves the centres by less than 1 mm.
-OutlineModel ModelOf(const BoardSpec& board, double range_m) {
+OutlineModel ModelOf(const BoardSpec& board, const LidarBoardOptions& options, double range_m) {
+  const LidarBeamOptions& beam = options.beam;
   OutlineModel model;
   model.width_m = board.width_m;
   model.height_m = board.height_m;
-  model.blur_m = 0.002 + 0.0005 * range_m;
-  model.spill_m = 0.005;
-  model.spill_sigma_m = 0.004;
-  model.thickness_m = 0.01;  // a plate is a few millimetres thick, a foam board 20 or so
-  model.thickness_sigma_m = 0.01;
+  model.blur_m = beam.blur_m + beam.blur_per_m * range_m;
+  model.spill_m = beam.spill_m;
+  model.spill_sigma_m = beam.spill_sigma_m;
+  model.thickness_m = options.thickness_m;
+  model.thickness_sigma_m = options.thickness_sigma_m;
   return model;
 }
 
@@ -67,6 +69,7 @@ Eigen::Vector2d LeanOf(const PlaneFrame& frame, const RectanglePose& pose) {
 /// Everything about one patch while it is measured.
 struct Measurement {
   PatchView view;
+  double hit_band_m;
   PlaneFrame frame;
   OutlineModel model;
   OutlineFit outline;
@@ -74,13 +77,17 @@ struct Measurement {
 };
 
 /// The beams around a patch, on its own plane.
-Measurement Begin(const PlanarPatch& patch, const BeamIndex& beams, const BoardSpec& board) {
+Measurement Begin(const PlanarPatch& patch,
+                  const BeamIndex& beams,
+                  const BoardSpec& board,
+                  const LidarBoardOptions& options) {
   PlaneFit plane = patch.plane;
   plane.point_m = patch.middle_m - plane.DistanceM(patch.middle_m) * plane.normal;
   const double diagonal_m = std::hypot(board.width_m, board.height_m);
-  Measurement m{PatchView(beams, plane.point_m, diagonal_m), PlaneFrame(plane), {}, {}, {}};
-  m.model = ModelOf(board, plane.point_m.norm());
-  m.view.Classify(m.frame);
+  const double band_m = options.beam.hit_band_m;
+  Measurement m{PatchView(beams, plane.point_m, diagonal_m), band_m, PlaneFrame(plane), {}, {}, {}};
+  m.model = ModelOf(board, options, plane.point_m.norm());
+  m.view.Classify(m.frame, band_m);
   return m;
 }
 
@@ -98,7 +105,7 @@ bool RefinePlane(Measurement* m) {
       FitPlaneRobustly(m->view.PositionsM(m->board_hits), m->frame.plane, kPlaneScaleM);
   plane.point_m = centre_m - plane.DistanceM(centre_m) * plane.normal;
   m->frame = PlaneFrame(plane);
-  m->view.Classify(m->frame);
+  m->view.Classify(m->frame, m->hit_band_m);
   const double angle_rad = std::atan2(m->frame.e2.dot(width_axis), m->frame.e1.dot(width_axis));
   m->outline.pose = {Eigen::Vector2d::Zero(), angle_rad};
   m->model.lean = LeanOf(m->frame, m->outline.pose);
@@ -182,45 +189,101 @@ LidarBoard Describe(const Measurement& m,
   return found;
 }
 
-bool AreLengthsNear(const std::array<double, 4>& measured_m, const std::array<double, 4>& true_m) {
-  constexpr double kMaxErrorM = 0.15;  // three times what four scan lines leave open
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (!(std::abs(measured_m[i] - true_m[i]) <= kMaxErrorM)) return false;
-  }
-  return true;
+/// "on the upper left": where `direction_lidar` points in the view of a lidar that looks along
+/// `ray`.
+std::string SideInView(const Eigen::Vector3d& direction_lidar, const Eigen::Vector3d& ray) {
+  constexpr double kEighth = 0.78539816339744831;  // of a turn
+  static constexpr std::array<const char*, 8> kNames = {"on the left",
+                                                        "on the upper left",
+                                                        "at the top",
+                                                        "on the upper right",
+                                                        "on the right",
+                                                        "on the lower right",
+                                                        "at the bottom",
+                                                        "on the lower left"};
+  const Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(ray);
+  const Eigen::Vector3d up = ray.cross(left);
+  const double angle_rad = std::atan2(direction_lidar.dot(up), direction_lidar.dot(left));
+  return kNames[static_cast<std::size_t>(std::lround(angle_rad / kEighth) + 8) % 8];
 }
+
+/// The side on which the outline is open, and what is there instead; nothing if it is closed.
+std::optional<NoLidarBoard> OpenSide(const Measurement& m,
+                                     const std::array<OutlineEdge, 4>& edges,
+                                     const Agreement& agreement,
+                                     double slack) {
+  constexpr double kMaxShortM = 0.05;   // hits of a closed outline come so near its edge...
+  constexpr double kMaxSpacings = 1.5;  // ...or as near as the beams are to each other
+  const double spacing_m = std::sqrt(m.model.width_m * m.model.height_m /
+                                     static_cast<double>(std::max(m.board_hits.size(), kMinHits)));
+  const double max_short_m = std::max(kMaxShortM, kMaxSpacings * spacing_m);
+  const std::optional<std::size_t> edge = OpenEdge(edges, agreement, max_short_m, slack);
+  if (!edge) return {};
+  const bool is_hidden = IsHidden(m.view.BlockedM(), m.model, m.outline.pose, *edge);
+  const Eigen::Isometry3d T_lidar_board = TransformOf(m.frame, m.outline.pose);
+  const Eigen::Vector2d outward = OutwardOf(*edge);
+  const Eigen::Vector3d outward_lidar =
+      T_lidar_board.linear() * Eigen::Vector3d(outward.x(), outward.y(), 0.0);
+  return NoLidarBoard{is_hidden ? LidarBoardMiss::kHidden : LidarBoardMiss::kCutOff,
+                      SideInView(outward_lidar, T_lidar_board.translation())};
+}
+
+/// That the board is certainly bent, and by how much; nothing if it may be flat.
+std::optional<NoLidarBoard> Bend(const Measurement& m,
+                                 const PointCloud& cloud_lidar_m,
+                                 double max_bend_m) {
+  constexpr double kCertain = 5.0;  // standard errors, themselves of a dozen scan lines
+  const Eigen::Isometry3d T_board_lidar = TransformOf(m.frame, m.outline.pose).inverse();
+  std::vector<Eigen::Vector3d> points_board_m = m.view.PositionsM(m.board_hits);
+  for (Eigen::Vector3d& point_m : points_board_m) point_m = T_board_lidar * point_m;
+  const BoardBend bend =
+      MeasureBend(points_board_m, RingsOf(m, cloud_lidar_m), m.model.width_m, m.model.height_m);
+  if (bend.bend_m - kCertain * bend.sigma_m <= max_bend_m) return {};
+  std::ostringstream detail;
+  detail << "by " << std::lround(bend.bend_m * 1e3) << " mm";
+  return NoLidarBoard{LidarBoardMiss::kBent, detail.str()};
+}
+
+NoLidarBoard Because(LidarBoardMiss miss) { return {miss, {}}; }
 
 }  // namespace
 
-Expected<LidarBoard, LidarBoardMiss> MeasureBoard(const PlanarPatch& patch,
-                                                  const BeamIndex& beams,
-                                                  const PointCloud& cloud_lidar_m,
-                                                  const BoardSpec& board) {
+Expected<LidarBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
+                                                const BeamIndex& beams,
+                                                const PointCloud& cloud_lidar_m,
+                                                const BoardSpec& board,
+                                                const LidarBoardOptions& options) {
   constexpr double kRoughly = 2.0;
-  constexpr double kMinCovered = 0.8;
-  Measurement m = Begin(patch, beams, board);
+  // Of a beam, in nats. Real boards leave 0.03; windows, doors and people 0.3 and more.
+  constexpr double kMaxUnexplained = 0.25;
+  Measurement m = Begin(patch, beams, board, options);
   const std::vector<OutlineBeam>& outline_beams = m.view.Outline();
-  if (!CouldShowBoard(outline_beams, m.model)) return LidarBoardMiss::kSizeMismatch;
+  if (!CouldShowBoard(outline_beams, m.model)) return Because(LidarBoardMiss::kSizeMismatch);
   m.outline = SearchOutline(outline_beams, m.model, Eigen::Vector2d::Zero());
+  if (m.outline.Unexplained() > kRoughly * kMaxUnexplained)
+    return Because(LidarBoardMiss::kSizeMismatch);
   // Plane and outline in turns: the outline says which points are the board's, and the plane where
   // the beams meet it.
   for (const double first_blur_m : {SearchBlurM(m.model) / 2, 3 * m.model.blur_m, 0.0}) {
     const Agreement agreement = AgreementOf(m);
-    if (!agreement.IsBoardLike(kRoughly)) return LidarBoardMiss::kSizeMismatch;
-    if (agreement.covered < kMinCovered / kRoughly) return LidarBoardMiss::kOutlineOpen;
-    if (!RefinePlane(&m)) return LidarBoardMiss::kNoPlane;
+    if (!agreement.IsBoardLike(kRoughly)) return Because(LidarBoardMiss::kSizeMismatch);
+    const auto edges = CountEdges(outline_beams, m.model, m.outline.pose);
+    if (auto open = OpenSide(m, edges, agreement, kRoughly)) return *open;
+    if (!RefinePlane(&m)) return Because(LidarBoardMiss::kNoPlane);
     const bool is_last = first_blur_m == 0.0;
     m.outline = is_last ? RefineOutline(outline_beams, m.model, m.outline.pose)
                         : SharpenOutline(outline_beams, m.model, m.outline.pose, first_blur_m);
   }
-  if (!Finish(&m)) return LidarBoardMiss::kNoPlane;
+  if (!Finish(&m)) return Because(LidarBoardMiss::kNoPlane);
   const Agreement agreement = AgreementOf(m);
-  if (!agreement.IsBoardLike()) return LidarBoardMiss::kSizeMismatch;
-  const std::array<OutlineEdge, 4> edges = MeasureEdges(m.view.Outline(), m.model, m.outline.pose);
-  const bool is_closed = std::all_of(edges.begin(), edges.end(), IsSeen);
-  if (!is_closed || agreement.covered < kMinCovered) return LidarBoardMiss::kOutlineOpen;
+  if (!agreement.IsBoardLike() || m.outline.Unexplained() > kMaxUnexplained)
+    return Because(LidarBoardMiss::kSizeMismatch);
+  const std::array<OutlineEdge, 4> edges = MeasureEdges(outline_beams, m.model, m.outline.pose);
+  if (auto open = OpenSide(m, edges, agreement, 1.0)) return *open;
   const std::array<double, 4> lengths_m = EdgeLengthsM(edges, m.model);
-  if (!AreLengthsNear(lengths_m, board.EdgeLengthsM())) return LidarBoardMiss::kSizeMismatch;
+  if (!AreLengthsRight(lengths_m, edges, board.EdgeLengthsM()))
+    return Because(LidarBoardMiss::kSizeMismatch);
+  if (auto bent = Bend(m, cloud_lidar_m, options.max_bend_m)) return *bent;
   return Describe(m, lengths_m, cloud_lidar_m, board);
 }
 

@@ -13,12 +13,13 @@
 namespace voqcal {
 
 /// Measures the board at one planar patch, or says why the patch is not the board: kNoPlane,
-/// kSizeMismatch or kOutlineOpen.
+/// kSizeMismatch, kCutOff, kHidden or kBent.
 ///
 /// @param beams  All returns of the sweep, also those behind the patch: they show where it ends.
-Expected<LidarBoard, LidarBoardMiss> MeasureBoard(const PlanarPatch& patch,
-                                                  const BeamIndex& beams,
-                                                  const PointCloud& cloud_lidar_m,
-                                                  const BoardSpec& board);
+Expected<LidarBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
+                                                const BeamIndex& beams,
+                                                const PointCloud& cloud_lidar_m,
+                                                const BoardSpec& board,
+                                                const LidarBoardOptions& options);
 
 }  // namespace voqcal

@@ -6,14 +6,7 @@
 namespace voqcal {
 namespace {
 
-/// Grows with the azimuth from 0 to 4 in a turn, without trigonometry.
-double PseudoAzimuth(double x, double y) {
-  const double sum = std::abs(x) + std::abs(y);
-  if (sum == 0.0) return 0.0;
-  const double ratio = y / sum;
-  if (x < 0) return 2.0 - ratio;
-  return ratio < 0 ? 4.0 + ratio : ratio;
-}
+constexpr std::uint8_t kNoSector = 255;
 
 std::size_t SectorOf(double pseudo_azimuth, std::size_t num_sectors) {
   return static_cast<std::size_t>(pseudo_azimuth / 4.0 * static_cast<double>(num_sectors)) %
@@ -22,19 +15,21 @@ std::size_t SectorOf(double pseudo_azimuth, std::size_t num_sectors) {
 
 }  // namespace
 
-std::vector<LidarBeam> ValidBeams(const PointCloud& cloud_lidar_m, double min_range_m) {
+double PseudoAzimuth(double x, double y) {
+  const double sum = std::abs(x) + std::abs(y);
+  if (sum == 0.0) return 0.0;
+  const double ratio = y / sum;
+  if (x < 0) return 2.0 - ratio;
+  return ratio < 0 ? 4.0 + ratio : ratio;
+}
+
+bool IsReturn(const Eigen::Vector3f& position_m, double min_range_m) {
   constexpr double kMinRangeM = 1e-3;  // the origin stands for "no return"
   constexpr double kMaxRangeM = 1e4;   // beyond any lidar: a broken value
   const double nearest_m = std::max(min_range_m, kMinRangeM);
-  std::vector<LidarBeam> beams;
-  beams.reserve(cloud_lidar_m.points.size());
-  for (std::size_t i = 0; i < cloud_lidar_m.points.size(); ++i) {
-    const Eigen::Vector3d position_m = cloud_lidar_m.points[i].position_m.cast<double>();
-    const double range_m = position_m.norm();
-    if (!(range_m >= nearest_m && range_m < kMaxRangeM)) continue;  // also catches NaN
-    beams.push_back({position_m / range_m, range_m, static_cast<std::uint32_t>(i)});
-  }
-  return beams;
+  const double square_m2 = position_m.cast<double>().squaredNorm();
+  // Also false for NaN.
+  return square_m2 >= nearest_m * nearest_m && square_m2 < kMaxRangeM * kMaxRangeM;
 }
 
 bool IsInShare(std::size_t i, std::size_t share, std::size_t num) {
@@ -44,18 +39,23 @@ bool IsInShare(std::size_t i, std::size_t share, std::size_t num) {
          4294967296.0 * static_cast<double>(share);
 }
 
-BeamIndex::BeamIndex(const std::vector<LidarBeam>& beams) : beams_(beams.size()) {
-  std::vector<std::uint8_t> sectors;
-  sectors.reserve(beams.size());
-  for (const LidarBeam& beam : beams) {
-    const std::size_t sector =
-        SectorOf(PseudoAzimuth(beam.direction.x(), beam.direction.y()), kNumSectors);
-    sectors.push_back(static_cast<std::uint8_t>(sector));
+BeamIndex::BeamIndex(const PointCloud& cloud_lidar_m, double min_range_m)
+    : cloud_lidar_m_(&cloud_lidar_m) {
+  const std::vector<LidarPoint>& points = cloud_lidar_m.points;
+  std::vector<std::uint8_t> sectors(points.size(), kNoSector);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f& position_m = points[i].position_m;
+    if (!IsReturn(position_m, min_range_m)) continue;
+    const std::size_t sector = SectorOf(PseudoAzimuth(position_m.x(), position_m.y()), kNumSectors);
+    sectors[i] = static_cast<std::uint8_t>(sector);
     ++begin_[sector + 1];
   }
   for (std::size_t i = 0; i < kNumSectors; ++i) begin_[i + 1] += begin_[i];
+  points_.resize(begin_[kNumSectors]);
   std::array<std::size_t, kNumSectors + 1> next = begin_;
-  for (std::size_t i = 0; i < beams.size(); ++i) beams_[next[sectors[i]]++] = beams[i];
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (sectors[i] != kNoSector) points_[next[sectors[i]]++] = static_cast<std::uint32_t>(i);
+  }
 }
 
 void BeamIndex::AppendCone(const Eigen::Vector3d& axis,
@@ -81,7 +81,11 @@ void BeamIndex::AppendCone(const Eigen::Vector3d& axis,
   for (std::size_t k = 0; k < num_sectors; ++k) {
     const std::size_t sector = (first + k) % kNumSectors;
     for (std::size_t i = begin_[sector]; i < begin_[sector + 1]; ++i) {
-      if (axis.dot(beams_[i].direction) > cosine) cone->push_back(beams_[i]);
+      const Eigen::Vector3d position_m =
+          cloud_lidar_m_->points[points_[i]].position_m.cast<double>();
+      const double range_m = position_m.norm();
+      if (axis.dot(position_m) <= cosine * range_m) continue;
+      cone->push_back({position_m / range_m, range_m, points_[i]});
     }
   }
 }

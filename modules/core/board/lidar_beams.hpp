@@ -20,19 +20,23 @@ struct LidarBeam {
   Eigen::Vector3d PositionM() const { return range_m * direction; }
 };
 
-/// The returns of a cloud at `min_range_m` or farther, in the cloud's order. Points that are not
-/// finite or lie at the origin (beams without a return) are left out.
-std::vector<LidarBeam> ValidBeams(const PointCloud& cloud_lidar_m, double min_range_m);
+/// Whether a point is a return at `min_range_m` or farther: finite, not the origin (a beam without
+/// a return), nearer than any broken value.
+bool IsReturn(const Eigen::Vector3f& position_m, double min_range_m);
+
+/// Grows with the azimuth from 0 to 4 in a turn, without trigonometry.
+double PseudoAzimuth(double x, double y);
 
 /// Whether the i-th of `num` things is among about `share` evenly taken ones. Multiples of the
 /// golden ratio modulo 1 fall evenly (Weyl) in step with no scan pattern; every n-th beam of an
 /// ordered sweep may be one ring.
 bool IsInShare(std::size_t i, std::size_t share, std::size_t num);
 
-/// Beams by direction: those of a cone are found without looking at all.
+/// The returns of a cloud by direction: those of a cone are found without looking at all.
 class BeamIndex {
  public:
-  explicit BeamIndex(const std::vector<LidarBeam>& beams);
+  /// @param cloud_lidar_m  borrowed; its returns nearer than `min_range_m` are left out.
+  BeamIndex(const PointCloud& cloud_lidar_m, double min_range_m);
 
   /// Appends the beams within `half_angle_rad` of `axis` (unit length).
   void AppendCone(const Eigen::Vector3d& axis,
@@ -42,7 +46,8 @@ class BeamIndex {
  private:
   static constexpr std::size_t kNumSectors = 128;  // about 3 degrees of azimuth each
 
-  std::vector<LidarBeam> beams_;                      // by sector, then as they came
+  const PointCloud* cloud_lidar_m_;
+  std::vector<std::uint32_t> points_;                 // by sector, then as they came
   std::array<std::size_t, kNumSectors + 1> begin_{};  // of each sector
 };
 

@@ -13,6 +13,7 @@
 namespace voqcal {
 namespace {
 
+constexpr double kPartM = 0.1;          // so near its plane a patch is of the same board
 constexpr std::size_t kMinPoints = 30;  // a board with fewer returns cannot be measured
 
 void RequireUsable(const char* what, const std::vector<std::string>& problems) {
@@ -22,23 +23,27 @@ void RequireUsable(const char* what, const std::vector<std::string>& problems) {
   throw std::invalid_argument(text);
 }
 
+bool IsSearched(const Eigen::Vector3f& position_m, const LidarBoardOptions& options) {
+  if (!IsReturn(position_m, options.min_range_m)) return false;
+  const Eigen::Vector3d p_m = position_m.cast<double>();
+  if (p_m.squaredNorm() > options.max_range_m * options.max_range_m) return false;
+  if (!options.region_of_interest) return true;
+  const RegionOfInterest& region = *options.region_of_interest;
+  return (p_m.array() >= region.min_lidar_m.array()).all() &&
+         (p_m.array() <= region.max_lidar_m.array()).all();
+}
+
 /// Where the board may be. Returns elsewhere still show where it ends.
-std::vector<Eigen::Vector3d> SearchedPoints(const std::vector<LidarBeam>& beams,
+std::vector<Eigen::Vector3d> SearchedPoints(const PointCloud& cloud_lidar_m,
                                             const LidarBoardOptions& options) {
-  constexpr std::size_t kMaxPoints = 150000;  // bounds the time; patches need no more
+  constexpr std::size_t kMaxPoints = 60000;  // bounds the time; patches need no more
+  const std::vector<LidarPoint>& points = cloud_lidar_m.points;
   std::vector<Eigen::Vector3d> points_m;
-  points_m.reserve(std::min(beams.size(), kMaxPoints));
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    const LidarBeam& beam = beams[i];
-    if (!IsInShare(i, kMaxPoints, beams.size())) continue;
-    if (beam.range_m > options.max_range_m) continue;
-    const Eigen::Vector3d position_m = beam.PositionM();
-    if (options.region_of_interest) {
-      const RegionOfInterest& region = *options.region_of_interest;
-      if ((position_m.array() < region.min_lidar_m.array()).any()) continue;
-      if ((position_m.array() > region.max_lidar_m.array()).any()) continue;
-    }
-    points_m.push_back(position_m);
+  points_m.reserve(std::min(points.size(), kMaxPoints + kMaxPoints / 8));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!IsInShare(i, kMaxPoints, points.size())) continue;
+    if (!IsSearched(points[i].position_m, options)) continue;
+    points_m.push_back(points[i].position_m.cast<double>());
   }
   return points_m;
 }
@@ -52,6 +57,25 @@ PatchSearchOptions PatchesOf(const BoardSpec& board) {
   search.max_radius_m = std::hypot(shorter_m, longer_m);
   search.min_points = kMinPoints;
   return search;
+}
+
+/// A board may fall into several patches.
+bool IsPartOfAny(const PlanarPatch& patch, const std::vector<LidarBoard>& found) {
+  return std::any_of(found.begin(), found.end(), [&](const LidarBoard& board) {
+    const Eigen::Vector3d offset_m = patch.middle_m - board.pose.centre_m;
+    const Eigen::Vector3d width_m = board.pose.corners_m[1] - board.pose.corners_m[0];
+    const Eigen::Vector3d height_m = board.pose.corners_m[3] - board.pose.corners_m[0];
+    return std::abs(offset_m.dot(board.pose.normal)) < kPartM &&
+           std::abs(offset_m.dot(width_m)) < width_m.squaredNorm() / 2 &&
+           std::abs(offset_m.dot(height_m)) < height_m.squaredNorm() / 2;
+  });
+}
+
+/// What came since the background was learned is up to twice as likely.
+void Favour(const LidarBackground& background, std::vector<LidarBoard>* found) {
+  for (LidarBoard& board : *found) {
+    board.log_likelihood *= 1.0 + background.ShareThatCame(board.points_lidar_m);
+  }
 }
 
 /// Two patches can lead to the same board: the better one stands for it.
@@ -76,6 +100,22 @@ std::vector<LidarBoard> Ranked(std::vector<LidarBoard> found, const BoardSpec& b
 
 }  // namespace
 
+std::vector<std::string> LidarBeamOptions::Problems() const {
+  std::vector<std::string> problems;
+  const auto require = [&problems](bool is_met, const char* rule, double value) {
+    if (is_met) return;
+    std::ostringstream text;
+    text << rule << ", is " << value;
+    problems.push_back(text.str());
+  };
+  require(spill_m >= 0, "spill_m must not be negative", spill_m);
+  require(spill_sigma_m > 0, "spill_sigma_m must be positive", spill_sigma_m);
+  require(blur_m > 0, "blur_m must be positive", blur_m);
+  require(blur_per_m >= 0, "blur_per_m must not be negative", blur_per_m);
+  require(hit_band_m > 0, "hit_band_m must be positive", hit_band_m);
+  return problems;
+}
+
 std::vector<std::string> LidarBoardOptions::Problems() const {
   std::vector<std::string> problems;
   const auto require = [&problems](bool is_met, const std::string& rule, double value) {
@@ -88,6 +128,13 @@ std::vector<std::string> LidarBoardOptions::Problems() const {
   require(max_range_m > min_range_m && std::isfinite(max_range_m),
           "max_range_m must be finite and above min_range_m",
           max_range_m);
+  require(max_bend_m > 0, "max_bend_m must be positive", max_bend_m);
+  require(thickness_m >= 0, "thickness_m must not be negative", thickness_m);
+  require(thickness_sigma_m > 0, "thickness_sigma_m must be positive", thickness_sigma_m);
+  for (const std::string& problem : beam.Problems()) problems.push_back("beam: " + problem);
+  for (const std::string& problem : background.Problems()) {
+    problems.push_back("background: " + problem);
+  }
   if (!region_of_interest) return problems;
   for (int axis = 0; axis < 3; ++axis) {
     require(region_of_interest->max_lidar_m[axis] > region_of_interest->min_lidar_m[axis],
@@ -97,50 +144,38 @@ std::vector<std::string> LidarBoardOptions::Problems() const {
   return problems;
 }
 
-std::string ToString(LidarBoardMiss miss) {
-  switch (miss) {
-    case LidarBoardMiss::kTooFewPoints:
-      return "too few points";
-    case LidarBoardMiss::kNoPlane:
-      return "no plane of the board's size";
-    case LidarBoardMiss::kSizeMismatch:
-      return "size mismatch";
-    case LidarBoardMiss::kOutlineOpen:
-      return "outline open";
-    case LidarBoardMiss::kAmbiguous:
-      return "ambiguous";
-  }
-  throw std::logic_error("ToString: unknown LidarBoardMiss");
-}
-
-Expected<std::vector<LidarBoard>, LidarBoardMiss> DetectLidarBoard(
-    const PointCloud& cloud_lidar_m, const BoardSpec& board, const LidarBoardOptions& options) {
+Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
+    const PointCloud& cloud_lidar_m,
+    const BoardSpec& board,
+    const LidarBoardOptions& options,
+    const LidarBackground* background) {
   constexpr std::size_t kMaxPatches = 12;  // bounds the time; a room has two or three
   constexpr double kAsGood = 0.8;          // share of the best likelihood that a rival may reach
   RequireUsable("board", board.Problems());
   RequireUsable("options", options.Problems());
 
-  const std::vector<LidarBeam> beams = ValidBeams(cloud_lidar_m, options.min_range_m);
-  const std::vector<Eigen::Vector3d> points_m = SearchedPoints(beams, options);
-  if (points_m.size() < kMinPoints) return LidarBoardMiss::kTooFewPoints;
+  const std::vector<Eigen::Vector3d> points_m = SearchedPoints(cloud_lidar_m, options);
+  if (points_m.size() < kMinPoints) return NoLidarBoard{LidarBoardMiss::kTooFewPoints, {}};
 
   std::vector<PlanarPatch> patches = FindPlanarPatches(points_m, PatchesOf(board));
   if (patches.size() > kMaxPatches) patches.resize(kMaxPatches);
-  const BeamIndex index(beams);
+  const BeamIndex index(cloud_lidar_m, options.min_range_m);
   std::vector<LidarBoard> found;
-  LidarBoardMiss miss = LidarBoardMiss::kNoPlane;  // of the patch that came closest
+  NoLidarBoard closest{LidarBoardMiss::kNoPlane, {}};
   for (const PlanarPatch& patch : patches) {
-    auto measured = MeasureBoard(patch, index, cloud_lidar_m, board);
+    if (IsPartOfAny(patch, found)) continue;
+    auto measured = MeasureBoard(patch, index, cloud_lidar_m, board, options);
     if (measured)
       found.push_back(std::move(*measured));
-    else
-      miss = std::max(miss, measured.error());
+    else if (measured.error().miss > closest.miss)
+      closest = measured.error();
   }
-  if (found.empty()) return miss;
+  if (found.empty()) return closest;
 
+  if (background != nullptr) Favour(*background, &found);
   std::vector<LidarBoard> ranked = Ranked(std::move(found), board);
   if (ranked.size() > 1 && ranked[1].log_likelihood > kAsGood * ranked[0].log_likelihood) {
-    return LidarBoardMiss::kAmbiguous;
+    return NoLidarBoard{LidarBoardMiss::kAmbiguous, {}};
   }
   return ranked;
 }

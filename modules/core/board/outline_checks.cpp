@@ -17,7 +17,8 @@ Agreement Compare(const std::vector<OutlineBeam>& beams,
                   const RectanglePose& pose) {
   constexpr double kMarginM = 0.03;  // partly hit beams prove nothing
   constexpr double kBorderM = 0.20;  // how far around the board its surroundings are looked at
-  constexpr int kNumFields = 4;
+  constexpr std::size_t kNumFields = 4;
+  constexpr double kFieldShare = 1.0 / (kNumFields * kNumFields);
   std::array<std::array<bool, kNumFields>, kNumFields> is_covered{};
   std::array<double, 2> inside{};
   std::array<double, 2> outside{};
@@ -45,9 +46,13 @@ Agreement Compare(const std::vector<OutlineBeam>& beams,
   const double num_expected =
       (inside[0] + inside[1]) * (area_m2(kBorderM) - area_m2(kMarginM)) / area_m2(-kMarginM);
   agreement.hits_outside = outside[1] / std::max({outside[0] + outside[1], num_expected, 1.0});
-  for (const auto& row : is_covered) {
-    agreement.covered +=
-        static_cast<double>(std::count(row.begin(), row.end(), true)) / (kNumFields * kNumFields);
+  for (std::size_t x = 0; x < kNumFields; ++x) {
+    for (std::size_t y = 0; y < kNumFields; ++y) {
+      if (!is_covered[x][y]) continue;
+      agreement.covered += kFieldShare;
+      agreement.covered_half[x < kNumFields / 2 ? 3 : 1] += 2 * kFieldShare;
+      agreement.covered_half[y < kNumFields / 2 ? 0 : 2] += 2 * kFieldShare;
+    }
   }
   return agreement;
 }
@@ -78,10 +83,56 @@ bool CouldShowBoard(const std::vector<OutlineBeam>& beams, const OutlineModel& m
              std::max(kMaxHitsOutside * (outside[0] + outside[1]), kMaxHitsPerOwn * num_own);
 }
 
-bool IsSeen(const OutlineEdge& edge) {
+bool IsSeen(const OutlineEdge& edge, double max_short_m) {
   constexpr int kMinMisses = 2;
-  constexpr double kMaxShortM = 0.05;
-  return edge.num_misses >= kMinMisses || edge.reach_m > -kMaxShortM;
+  return edge.num_misses >= kMinMisses || edge.reach_m > -max_short_m;
+}
+
+std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
+                                    const Agreement& agreement,
+                                    double max_short_m,
+                                    double slack) {
+  constexpr double kMinCovered = 0.8;
+  std::optional<std::size_t> open;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (IsSeen(edges[i], slack * max_short_m)) continue;
+    if (!open || edges[i].reach_m < edges[*open].reach_m) open = i;
+  }
+  if (open || agreement.covered >= kMinCovered / slack) return open;
+  const auto& half = agreement.covered_half;
+  return static_cast<std::size_t>(std::min_element(half.begin(), half.end()) - half.begin());
+}
+
+bool AreLengthsRight(const std::array<double, 4>& measured_m,
+                     const std::array<OutlineEdge, 4>& edges,
+                     const std::array<double, 4>& true_m) {
+  constexpr double kOpenM = 0.03;
+  constexpr double kNumSigmas = 4.0;
+  constexpr double kMaxErrorM = 0.15;
+  for (std::size_t i = 0; i < 4; ++i) {
+    // Edge i reaches from the edge before it to the one after it.
+    const double sigma_m =
+        std::hypot(edges[(i + 3) % 4].offset_sigma_m, edges[(i + 1) % 4].offset_sigma_m);
+    const double max_error_m = std::min(kOpenM + kNumSigmas * sigma_m, kMaxErrorM);
+    if (!(std::abs(measured_m[i] - true_m[i]) <= max_error_m)) return false;
+  }
+  return true;
+}
+
+bool IsHidden(const std::vector<Eigen::Vector2d>& blocked_m,
+              const OutlineModel& model,
+              const RectanglePose& pose,
+              std::size_t edge) {
+  constexpr double kPastM = 0.1;
+  constexpr std::ptrdiff_t kMinBlocked = 3;  // fewer are stray
+  const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
+  const Eigen::Vector2d outward = OutwardOf(edge);
+  const Eigen::Array2d half_m(model.width_m / 2, model.height_m / 2);
+  const auto num = std::count_if(blocked_m.begin(), blocked_m.end(), [&](const auto& p_m) {
+    const Eigen::Vector2d q_m = T_rectangle_plane * p_m;
+    return outward.dot(q_m) > 0 && (q_m.array().abs() < half_m + kPastM).all();
+  });
+  return num >= kMinBlocked;
 }
 
 double LogLikelihoodOfChance(const std::vector<OutlineBeam>& beams) {

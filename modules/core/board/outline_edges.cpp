@@ -38,35 +38,53 @@ std::array<Side, 4> Sides(const OutlineModel& model) {
   const auto grow_m = [&](int axis, int side) {
     return spill_m[axis] + model.thickness_m * lean[side];
   };
-  return {Side{{0, -1}, {1, 0}, x, y, blur_m.y(), grow_m(1, 3)},
-          Side{{1, 0}, {0, 1}, y, x, blur_m.x(), grow_m(0, 0)},
-          Side{{0, 1}, {-1, 0}, x, y, blur_m.y(), grow_m(1, 2)},
-          Side{{-1, 0}, {0, -1}, y, x, blur_m.x(), grow_m(0, 1)}};
+  return {Side{OutwardOf(0), {1, 0}, x, y, blur_m.y(), grow_m(1, 3)},
+          Side{OutwardOf(1), {0, 1}, y, x, blur_m.x(), grow_m(0, 0)},
+          Side{OutwardOf(2), {-1, 0}, x, y, blur_m.y(), grow_m(1, 2)},
+          Side{OutwardOf(3), {0, -1}, y, x, blur_m.x(), grow_m(0, 1)}};
 }
 
-std::vector<NearBeam> BeamsNear(const std::vector<OutlineBeam>& beams,
-                                const RectanglePose& pose,
-                                const Side& side,
-                                double window_m,
-                                double corner_m) {
+/// How far from its edge a beam still says something of it.
+double WindowM(const OutlineModel& model) { return std::min(model.width_m, model.height_m) / 4; }
+
+std::array<std::vector<NearBeam>, 4> BeamsNear(const std::vector<OutlineBeam>& beams,
+                                               const OutlineModel& model,
+                                               const RectanglePose& pose,
+                                               const std::array<Side, 4>& sides) {
+  const double window_m = WindowM(model);
+  // Near a corner the neighbouring edge decides too.
+  const double corner_m = std::max(3 * model.blur_m, window_m / 4);
   const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
-  std::vector<NearBeam> near;
+  std::array<std::vector<NearBeam>, 4> near;
   for (const OutlineBeam& beam : beams) {
     const Eigen::Vector2d q_m = T_rectangle_plane * beam.position_m;
-    const double outside_m = side.outward.dot(q_m) - side.half_depth_m;
-    const double along_m = side.along.dot(q_m);
-    if (std::abs(outside_m) > window_m || std::abs(along_m) > side.half_length_m - corner_m)
-      continue;
-    near.push_back({along_m, outside_m, beam.is_hit});
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double outside_m = sides[i].outward.dot(q_m) - sides[i].half_depth_m;
+      if (std::abs(outside_m) > window_m) continue;
+      const double along_m = sides[i].along.dot(q_m);
+      if (std::abs(along_m) > sides[i].half_length_m - corner_m) continue;
+      near[i].push_back({along_m, outside_m, beam.is_hit});
+    }
   }
   return near;
 }
 
+OutlineEdge CountEdge(const std::vector<NearBeam>& near, double window_m) {
+  OutlineEdge edge;
+  edge.reach_m = -window_m;
+  for (const NearBeam& beam : near) {
+    (beam.is_hit ? edge.num_hits : edge.num_misses) += 1;
+    if (beam.is_hit) edge.reach_m = std::max(edge.reach_m, beam.outside_m);
+  }
+  return edge;
+}
+
 /// Fisher scoring of [offset; slope] in p = L((offset + slope * along + grow - outside) / blur).
-Eigen::Vector2d FitLine(const std::vector<NearBeam>& near,
-                        const OutlineModel& model,
-                        const Side& side,
-                        double window_m) {
+void FitLine(const std::vector<NearBeam>& near,
+             const OutlineModel& model,
+             const Side& side,
+             double window_m,
+             OutlineEdge* edge) {
   constexpr int kNumIterations = 20;
   const double keep = 1.0 - model.outlier_share;
   Eigen::Vector2d line = Eigen::Vector2d::Zero();
@@ -88,44 +106,54 @@ Eigen::Vector2d FitLine(const std::vector<NearBeam>& near,
     step[0] = std::clamp(step[0], -window_m / 4, window_m / 4);
     step[1] = std::clamp(step[1], -0.1, 0.1);
     line += step;
+    edge->offset_sigma_m = std::sqrt(H.inverse()(0, 0));
     if (step.norm() < 1e-6) break;  // a micrometre
   }
-  return line;
+  edge->offset_m = line[0];
+  edge->slope = line[1];
 }
 
 OutlineEdge MeasureEdge(const std::vector<NearBeam>& near,
                         const OutlineModel& model,
                         const Side& side,
                         double window_m) {
-  OutlineEdge edge;
-  edge.reach_m = -window_m;
-  for (const NearBeam& beam : near) {
-    (beam.is_hit ? edge.num_hits : edge.num_misses) += 1;
-    if (beam.is_hit) edge.reach_m = std::max(edge.reach_m, beam.outside_m);
-  }
+  OutlineEdge edge = CountEdge(near, window_m);
   if (edge.num_misses == 0) {  // nothing behind it to show its end: the hits' reach is all there is
     edge.offset_m = edge.reach_m - side.grow_m;
+    edge.offset_sigma_m = window_m;
     return edge;
   }
-  const Eigen::Vector2d line = FitLine(near, model, side, window_m);
-  edge.offset_m = line[0];
-  edge.slope = line[1];
+  FitLine(near, model, side, window_m, &edge);
   return edge;
 }
 
 }  // namespace
 
+Eigen::Vector2d OutwardOf(std::size_t edge) {
+  const std::array<Eigen::Vector2d, 4> outward = {-Eigen::Vector2d::UnitY(),
+                                                  Eigen::Vector2d::UnitX(),
+                                                  Eigen::Vector2d::UnitY(),
+                                                  -Eigen::Vector2d::UnitX()};
+  return outward[edge];
+}
+
+std::array<OutlineEdge, 4> CountEdges(const std::vector<OutlineBeam>& beams,
+                                      const OutlineModel& model,
+                                      const RectanglePose& pose) {
+  const auto near = BeamsNear(beams, model, pose, Sides(model));
+  std::array<OutlineEdge, 4> edges;
+  for (std::size_t i = 0; i < 4; ++i) edges[i] = CountEdge(near[i], WindowM(model));
+  return edges;
+}
+
 std::array<OutlineEdge, 4> MeasureEdges(const std::vector<OutlineBeam>& beams,
                                         const OutlineModel& model,
                                         const RectanglePose& pose) {
-  const double window_m = std::min(model.width_m, model.height_m) / 4;
-  // Near a corner the neighbouring edge decides too.
-  const double corner_m = std::max(3 * model.blur_m, window_m / 4);
   const std::array<Side, 4> sides = Sides(model);
+  const auto near = BeamsNear(beams, model, pose, sides);
   std::array<OutlineEdge, 4> edges;
   for (std::size_t i = 0; i < 4; ++i) {
-    const std::vector<NearBeam> near = BeamsNear(beams, pose, sides[i], window_m, corner_m);
-    edges[i] = MeasureEdge(near, model, sides[i], window_m);
+    edges[i] = MeasureEdge(near[i], model, sides[i], WindowM(model));
   }
   return edges;
 }

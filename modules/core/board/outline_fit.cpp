@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -34,7 +35,24 @@ void Expect(double value, double mean, double sigma, Eigen::Index row, Climb* cl
 
 /// L(t) of the model; beyond kFlat it differs from a step by 1e-6: no slope left.
 constexpr double kFlat = 14.0;
-double Logistic(double t) { return t > kFlat ? 1.0 : 1.0 / (1.0 + std::exp(-t)); }
+
+/// L at two opposite sides: their arguments always add to the same, so one exponential does both.
+struct OppositeSides {
+  double sum;  // of the two arguments
+  double exp_minus_sum;
+
+  explicit OppositeSides(double sum_of_both) : sum(sum_of_both), exp_minus_sum(std::exp(-sum)) {}
+
+  void Logistic(double t, double* L, double* L_opposite) const {
+    const bool is_nearer = t <= sum - t;
+    const double nearer = is_nearer ? t : sum - t;
+    *L = *L_opposite = 1.0;
+    if (nearer > kFlat) return;
+    const double e = std::exp(-nearer);
+    (is_nearer ? *L : *L_opposite) = 1.0 / (1.0 + e);
+    (is_nearer ? *L_opposite : *L) = e / (e + exp_minus_sum);
+  }
+};
 
 /// Sums over beams. A logarithm is taken of many probabilities' product at once.
 struct BeamSums {
@@ -47,8 +65,8 @@ struct BeamSums {
     constexpr double kTiny = 1e-200;
     likelihood *= is_hit ? p_hit : 1.0 - p_hit;
     if (likelihood < kTiny) Flush();
-    const double pull = 1.0 / (is_hit ? p_hit : p_hit - 1.0);
     const double weight = 1.0 / (p_hit * (1.0 - p_hit));
+    const double pull = is_hit ? weight * (1.0 - p_hit) : -weight * p_hit;
     std::size_t k = 0;
     for (std::size_t row = 0; row < 5; ++row) {
       gradient[row] += pull * J[row];
@@ -92,11 +110,14 @@ Climb Differentiate(const std::vector<OutlineBeam>& beams,
   const double cosine = std::cos(at.pose.angle_rad);
   const double sine = std::sin(at.pose.angle_rad);
   Climb climb;
+  climb.fit.num_beams = beams.size();
   climb.fit.pose = at.pose;
   climb.fit.spill_m = at.spill_m;
   climb.fit.thickness_m = at.thickness_m;
   Expect(at.spill_m, model.spill_m, model.spill_sigma_m, 3, &climb);
   Expect(at.thickness_m, model.thickness_m, model.thickness_sigma_m, 4, &climb);
+  const OppositeSides across((half_m[0] + half_m[1]) * per_blur.x());
+  const OppositeSides upright((half_m[2] + half_m[3]) * per_blur.y());
   BeamSums sums;
   for (const OutlineBeam& beam : beams) {
     const double dx = beam.position_m.x() - at.pose.centre_m.x();
@@ -112,10 +133,9 @@ Climb Differentiate(const std::vector<OutlineBeam>& beams,
       sums.log_likelihood += (least > 0) == beam.is_hit ? log_sure : log_far;
       continue;
     }
-    const double L_right = Logistic(right);
-    const double L_left = Logistic(left);
-    const double L_top = Logistic(top);
-    const double L_bottom = Logistic(bottom);
+    double L_right, L_left, L_top, L_bottom;
+    across.Logistic(right, &L_right, &L_left);
+    upright.Logistic(top, &L_top, &L_bottom);
     const double kept = keep * L_right * L_left * L_top * L_bottom;
     // d p / d (distance inside each side), then: the centre and the angle move q by -(1, 0), -(0,
     // 1) and (y, -x).
@@ -206,6 +226,40 @@ std::vector<OutlineBeam> Thinned(const std::vector<OutlineBeam>& beams, std::siz
   return thinned;
 }
 
+/// How well a rectangle divides hits from misses, without exponentials: beams count as far as they
+/// are on their own side, up to `blur_m`.
+double RoughScore(const std::vector<OutlineBeam>& beams,
+                  const OutlineModel& model,
+                  const RectanglePose& pose,
+                  double blur_m) {
+  const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
+  const Eigen::Array2d half_m(model.width_m / 2, model.height_m / 2);
+  double score_m = 0.0;
+  for (const OutlineBeam& beam : beams) {
+    const Eigen::Vector2d q_m = T_rectangle_plane * beam.position_m;
+    const double inside_m = (half_m - q_m.array().abs()).minCoeff();
+    score_m += std::clamp(beam.is_hit ? inside_m : -inside_m, -blur_m, blur_m);
+  }
+  return score_m;
+}
+
+/// Angles over half a turn, the most promising first.
+std::vector<double> RankedAngles(const std::vector<OutlineBeam>& beams,
+                                 const OutlineModel& model,
+                                 const Eigen::Vector2d& centre_m) {
+  constexpr int kNumAngles = 12;  // 15 degrees apart: within reach of the wide blur
+  std::vector<std::pair<double, double>> ranked;
+  for (int i = 0; i < kNumAngles; ++i) {
+    const double angle_rad = kPi * i / kNumAngles;
+    const double score_m = RoughScore(beams, model, {centre_m, angle_rad}, model.blur_m);
+    ranked.emplace_back(-score_m, angle_rad);
+  }
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<double> angles_rad;
+  for (const auto& [score_m, angle_rad] : ranked) angles_rad.push_back(angle_rad);
+  return angles_rad;
+}
+
 OutlineModel WithBlur(OutlineModel model, double blur_m) {
   model.blur_m = blur_m;
   return model;
@@ -237,16 +291,17 @@ OutlineFit EvaluateOutline(const std::vector<OutlineBeam>& beams,
 OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
                          const OutlineModel& model,
                          const Eigen::Vector2d& centre_m) {
-  constexpr int kNumAngles = 6;  // over half a turn: 30 degrees, within reach of the wide blur
+  constexpr std::size_t kNumTried = 3;  // the centre is only about right, so the score may err
   constexpr int kNumFirstSteps = 2;
-  constexpr int kNumSteps = 4;
+  constexpr int kNumSteps = 8;
   constexpr std::size_t kNumBeams = 250;
   const std::vector<OutlineBeam> few = Thinned(beams, kNumBeams);
   const OutlineModel wide = WithBlur(model, std::max(model.blur_m, SearchBlurM(model)));
+  const std::vector<double> angles_rad = RankedAngles(few, wide, centre_m);
   OutlineFit best;
-  for (int i = 0; i < kNumAngles; ++i) {
+  for (std::size_t i = 0; i < kNumTried; ++i) {
     const OutlineFit fit =
-        Refine(few, wide, StartAt(model, {centre_m, kPi * i / kNumAngles}), kNumFirstSteps);
+        Refine(few, wide, StartAt(model, {centre_m, angles_rad[i]}), kNumFirstSteps);
     if (i == 0 || fit.log_likelihood > best.log_likelihood) best = fit;
   }
   return Refine(few, wide, best, kNumSteps);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -66,9 +66,15 @@ struct OutlineFit {
   double spill_m = 0.0;
   double thickness_m = 0.0;
   double log_likelihood = 0.0;
+  std::size_t num_beams = 0;  ///< That the likelihood is of.
   /// Fisher information of [x; y; angle; spill; thickness], x and y along the rectangle's axes
   /// (m, m, rad, m, m).
   Matrix5d information = Matrix5d::Zero();
+
+  /// Mean surprise of a beam, in nats: 0 where the rectangle explains everything.
+  double Unexplained() const {
+    return num_beams == 0 ? 0.0 : -log_likelihood / static_cast<double>(num_beams);
+  }
 
   /// Of [x; y; angle], spill and thickness being uncertain.
   Eigen::Matrix3d PoseCovariance() const;

@@ -22,30 +22,34 @@ PatchView::PatchView(const BeamIndex& beams, const Eigen::Vector3d& middle_m, do
   beams_.resize(num_kept);
 }
 
-void PatchView::Classify(const PlaneFrame& frame) {
+void PatchView::Classify(const PlaneFrame& frame, double band_m) {
   constexpr double kMinGrazing = 0.1;  // flatter than 6 degrees a plane cannot be measured
-  // Scan lines of one lidar differ by up to 30 mm and dark from bright squares by 15 mm, both on
-  // top of 10 mm of noise (1 sigma): a band that keeps nearly every return of the board.
-  constexpr double kBandM = 0.05;
-  // Returns in front of the plane are something in the way; just behind it, a beam that was half on
-  // the board: neither tells where the board ends.
-  constexpr double kMixedM = 0.10;
+  // Just behind the plane a beam was half on the board: it does not tell where the board ends.
+  const double mixed_m = 2 * band_m;
   outline_.clear();
   outline_.reserve(beams_.size());
+  blocked_m_.clear();
   hits_.clear();
-  const double offset_m = frame.plane.normal.dot(frame.plane.point_m);
+  const PlaneFit& plane = frame.plane;
+  const double offset_m = plane.normal.dot(plane.point_m);
+  const Eigen::Vector2d origin_m(frame.e1.dot(plane.point_m), frame.e2.dot(plane.point_m));
   for (std::size_t i = 0; i < beams_.size(); ++i) {
-    const double cosine = frame.plane.normal.dot(beams_[i].direction);
+    const Eigen::Vector3d& direction = beams_[i].direction;
+    const double cosine = plane.normal.dot(direction);
     if (cosine > -kMinGrazing) continue;
     const double plane_range_m = offset_m / cosine;
-    const Eigen::Vector2d position_m = frame.ToPlane(plane_range_m * beams_[i].direction);
-    if (position_m.norm() > radius_m_) continue;
+    const Eigen::Vector2d position_m =
+        plane_range_m * Eigen::Vector2d(frame.e1.dot(direction), frame.e2.dot(direction)) -
+        origin_m;
+    if (position_m.squaredNorm() > radius_m_ * radius_m_) continue;
     const double behind_m = (beams_[i].range_m - plane_range_m) * -cosine;
-    if (std::abs(behind_m) <= kBandM) {
+    if (std::abs(behind_m) <= band_m) {
       hits_.push_back(i);
       outline_.push_back({position_m, true});
-    } else if (behind_m > kMixedM) {
+    } else if (behind_m > mixed_m) {
       outline_.push_back({position_m, false});
+    } else if (behind_m < 0) {
+      blocked_m_.push_back(position_m);
     }
   }
 }

@@ -33,10 +33,13 @@ class PatchView {
   /// Keeps the beams in the cone that covers `radius_m` around `middle_m`.
   PatchView(const BeamIndex& beams, const Eigen::Vector3d& middle_m, double radius_m);
 
-  /// Tells hits from misses against `frame`, within the radius of its origin.
-  void Classify(const PlaneFrame& frame);
+  /// Tells hits (up to `band_m` before or behind) from misses against `frame`, within the radius of
+  /// its origin.
+  void Classify(const PlaneFrame& frame, double band_m);
 
   const std::vector<OutlineBeam>& Outline() const { return outline_; }
+  /// Where beams that end in front of the plane would have met it.
+  const std::vector<Eigen::Vector2d>& BlockedM() const { return blocked_m_; }
   const LidarBeam& Beam(std::size_t i) const { return beams_[i]; }
 
   /// The hits whose points lie in the rectangle, grown by `margin_m`: indices for Beam().
@@ -51,6 +54,7 @@ class PatchView {
   double radius_m_;
   std::vector<LidarBeam> beams_;
   std::vector<OutlineBeam> outline_;
+  std::vector<Eigen::Vector2d> blocked_m_;
   std::vector<std::size_t> hits_;
 };
 

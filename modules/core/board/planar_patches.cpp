@@ -64,27 +64,25 @@ std::vector<std::size_t> SeedOrder(const std::vector<CellSurface>& surfaces) {
   return seeds;
 }
 
-/// All cells that continue the seed's plane without a gap of more than one cell (far away, scan
-/// lines are more than a cell apart).
-void Grow(std::size_t seed,
-          std::int32_t patch,
+/// All cells that continue the plane of `members` in steps of up to `reach` cells: far away, scan
+/// lines are more than a cell apart.
+void Grow(std::int32_t patch,
+          int reach,
           const VoxelGrid& grid,
           const PatchSearchOptions& options,
           std::vector<CellSurface>* surfaces,
           std::vector<std::size_t>* members) {
   constexpr double kMinNormalCosine = 0.9;  // 26 degrees: surfaces of small cells are rough
-  PlaneFit plane = (*surfaces)[seed].plane;
+  PlaneFit plane = (*surfaces)[members->front()].plane;
   PointMoments moments;
   std::size_t num_at_fit = 27;  // the surface is about as good as this many cells
-  members->assign(1, seed);
-  (*surfaces)[seed].patch = patch;
   for (std::size_t next = 0; next < members->size(); ++next) {
     moments.Add(grid.Moments((*members)[next]));
     if (next >= 2 * num_at_fit) {
       plane = FitPlane(moments);
       num_at_fit = next;
     }
-    grid.ForEachNear((*members)[next], 2, [&](std::size_t i) {
+    grid.ForEachNear((*members)[next], reach, [&](std::size_t i) {
       CellSurface& surface = (*surfaces)[i];
       if (surface.patch != kNone) return;
       if (std::abs(plane.DistanceM(grid.MeanM(i))) > options.band_m) return;
@@ -117,6 +115,11 @@ double Unlikeness(const PlanarPatch& patch, const PatchSearchOptions& options) {
   return std::max(shorter, longer);
 }
 
+bool IsTooLarge(const PlanarPatch& patch, const PatchSearchOptions& options) {
+  return patch.plane.spread_m[1] > 2 * options.spread_m[0] ||
+         patch.plane.spread_m[2] > 2 * options.spread_m[1];
+}
+
 bool HasBoardSize(const PlanarPatch& patch,
                   const std::vector<std::size_t>& members,
                   const VoxelGrid& grid,
@@ -139,9 +142,24 @@ std::vector<PlanarPatch> FindPlanarPatches(const std::vector<Eigen::Vector3d>& p
   std::int32_t num_grown = 0;
   for (const std::size_t seed : SeedOrder(surfaces)) {
     if (surfaces[seed].patch != kNone) continue;
-    Grow(seed, num_grown++, grid, options, &surfaces, &members);
-    const PlanarPatch patch = Describe(members, grid);
-    if (HasBoardSize(patch, members, grid, options)) patches.push_back(patch);
+    const std::int32_t grown = num_grown++;
+    surfaces[seed].patch = grown;
+    members.assign(1, seed);
+    Grow(grown, 1, grid, options, &surfaces, &members);
+    const PlanarPatch near = Describe(members, grid);
+    if (IsTooLarge(near, options)) continue;
+    const std::size_t num_near = members.size();
+    const bool is_near_board = HasBoardSize(near, members, grid, options);
+    // What a gap divides may be one board seen by few scan lines, or a board and what stands beside
+    // it: the larger of the two that has the board's size.
+    Grow(grown, 2, grid, options, &surfaces, &members);
+    const PlanarPatch far = Describe(members, grid);
+    if (HasBoardSize(far, members, grid, options)) {
+      patches.push_back(far);
+    } else if (is_near_board) {
+      patches.push_back(near);
+      for (std::size_t i = num_near; i < members.size(); ++i) surfaces[members[i]].patch = kNone;
+    }
   }
   std::stable_sort(patches.begin(), patches.end(), [&](const auto& a, const auto& b) {
     return Unlikeness(a, options) < Unlikeness(b, options);

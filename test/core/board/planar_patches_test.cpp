@@ -63,8 +63,9 @@ TEST(FindPlanarPatches, FindsARectangleAndNeitherWallNorBush) {
 }
 
 TEST(BeamIndex, FindsWhatAScanOfAllBeamsFinds) {
-  const std::vector<LidarBeam> beams = ValidBeams(UniformNoise(5000), 0.5);
-  const BeamIndex index(beams);
+  constexpr double kMinRangeM = 0.5;
+  const PointCloud cloud = UniformNoise(5000);
+  const BeamIndex index(cloud, kMinRangeM);
   std::mt19937 random(6);
   for (int trial = 0; trial < 50; ++trial) {
     const Eigen::Vector3d axis =
@@ -74,7 +75,11 @@ TEST(BeamIndex, FindsWhatAScanOfAllBeamsFinds) {
     std::vector<LidarBeam> cone;
     index.AppendCone(axis, half_angle_rad, &cone);
     std::size_t num = 0;
-    for (const LidarBeam& beam : beams) num += axis.dot(beam.direction) > std::cos(half_angle_rad);
+    for (const LidarPoint& point : cloud.points) {
+      const Eigen::Vector3d position_m = point.position_m.cast<double>();
+      num += position_m.norm() >= kMinRangeM &&
+             axis.dot(position_m) > std::cos(half_angle_rad) * position_m.norm();
+    }
     EXPECT_EQ(cone.size(), num) << axis.transpose() << ' ' << half_angle_rad;
   }
 }

@@ -85,6 +85,24 @@ TEST_F(LidarBoardDetectorNodeTest, CountsACloudThatContradictsItselfAndGoesOn) {
   EXPECT_EQ(node_.counters(), (test::Counters{{"boards", 1}, {found()[0].miss, 1}}));
 }
 
+TEST_F(LidarBoardDetectorNodeTest, LearnsTheBackgroundFromEarlierSweeps) {
+  test::SyntheticLidarBoardOptions scene;
+  scene.board = test::TestBoard();
+  test::SyntheticBox poster;
+  poster.T_lidar_box = test::FacingBoard({2.3, -1.2, -0.1}, 40.0);
+  poster.half_m = {scene.board.width_m / 2, scene.board.height_m / 2, 0.001};
+  scene.boxes.push_back(poster);
+  scene.T_lidar_board = test::FacingBoard({2.3, 0.6, -0.1}, 40.0, 10.0);
+  scene.has_board = false;
+  Send(ToMessage(test::SynthesizeLidarBoard(scene), 1, 0));
+  scene.has_board = true;
+  Send(ToMessage(test::SynthesizeLidarBoard(scene), 2, 1));
+  ASSERT_THAT(found(), SizeIs(2));
+  const LidarSighting sighting = SightingFromMessage(found()[1]);
+  ASSERT_TRUE(sighting.board) << found()[1].miss;
+  EXPECT_LT((sighting.board->pose.centre_m - scene.T_lidar_board.translation()).norm(), 0.02);
+}
+
 TEST_F(LidarBoardDetectorNodeTest, NumbersItsMessages) {
   for (int i = 0; i < 3; ++i) Send(ToMessage(PointCloud{}, i, i));
   ASSERT_THAT(found(), SizeIs(3));

@@ -1,0 +1,132 @@
+// What the detector says of boards that it must not take, and of sweeps that are none.
+
+#include <limits>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "core/board/lidar_board.hpp"
+#include "support/synthetic_lidar_board.hpp"
+
+namespace voqcal {
+namespace {
+
+using test::FacingBoard;
+using test::SynthesizeLidarBoard;
+using test::SyntheticBox;
+using test::SyntheticLidarBoardOptions;
+
+const BoardSpec kBoard = SyntheticLidarBoardOptions().board;
+
+std::string VerdictOn(const PointCloud& cloud) {
+  const auto found = DetectLidarBoard(cloud, kBoard, {});
+  return found ? "found" : ToString(found.error());
+}
+
+SyntheticLidarBoardOptions UprightBoard() {
+  SyntheticLidarBoardOptions scene;
+  scene.noise_m = 0.01;
+  scene.T_lidar_board = FacingBoard({2.3, 0.0, 0.0}, 0.0);
+  return scene;
+}
+
+/// At half the board's distance, so that it hides twice its size.
+SyntheticBox Pillar(double y_m, double half_width_m) {
+  SyntheticBox box;
+  box.T_lidar_box.translation() = Eigen::Vector3d(1.15, y_m, 0.0);
+  box.half_m = {0.02, half_width_m, 0.6};
+  return box;
+}
+
+TEST(LidarBoardVerdict, HiddenSideIsNamed) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  EXPECT_EQ("found", VerdictOn(SynthesizeLidarBoard(scene)));
+  scene.boxes.push_back(Pillar(0.3, 0.28));  // from y = 0.02 m, 0.04 m on the board, to the left
+  EXPECT_EQ("outline open: something stands before it on the left",
+            VerdictOn(SynthesizeLidarBoard(scene)));
+  scene.boxes.back() = Pillar(-0.3, 0.25);
+  EXPECT_EQ("outline open: something stands before it on the right",
+            VerdictOn(SynthesizeLidarBoard(scene)));
+}
+
+TEST(LidarBoardVerdict, EndOfTheFieldOfViewIsNamed) {
+  const PointCloud whole = SynthesizeLidarBoard(UprightBoard());
+  PointCloud cut = whole;
+  cut.points.clear();
+  for (const LidarPoint& point : whole.points) {
+    // A sensor that sees no farther to the left than 0.1 m from the board's middle.
+    if (point.position_m.y() < 0.1F / 2.3F * point.position_m.x()) cut.points.push_back(point);
+  }
+  EXPECT_EQ("outline open: the field of view ends on the left", VerdictOn(cut));
+}
+
+TEST(LidarBoardVerdict, BentBoardIsNamedWithItsBend) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  PointCloud cloud = SynthesizeLidarBoard(scene);
+  for (LidarPoint& point : cloud.points) {
+    // Bent about a vertical line by 40 mm at both sides; past the board nothing changes.
+    const double y_m = point.position_m.y();
+    const bool is_board = std::abs(point.position_m.x() - 2.3F) < 0.1F && std::abs(y_m) < 0.32;
+    if (is_board) point.position_m.x() += static_cast<float>(0.04 * std::pow(y_m / 0.305, 2));
+  }
+  const auto found = DetectLidarBoard(cloud, kBoard, {});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().miss, LidarBoardMiss::kBent);
+  // 10 mm of noise on some 500 points: about 1 mm.
+  const std::string detail = found.error().detail;
+  EXPECT_GE(detail, "by 36 mm");
+  EXPECT_LE(detail, "by 44 mm");
+}
+
+TEST(LidarBoardVerdict, FlatBoardIsNotBentByOffsetsOfScanLines) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    SyntheticLidarBoardOptions scene = UprightBoard();
+    scene.seed = seed;
+    PointCloud cloud = SynthesizeLidarBoard(scene);
+    std::mt19937 random(seed);
+    std::vector<float> offset_m;  // of each ring: 10 mm (1 sigma)
+    for (int ring = 0; ring < scene.num_rings; ++ring) {
+      offset_m.push_back(static_cast<float>(0.01 * test::UnitGaussian(&random)));
+    }
+    for (LidarPoint& point : cloud.points) {
+      point.position_m += offset_m[point.ring] * point.position_m.normalized();
+    }
+    EXPECT_EQ("found", VerdictOn(cloud)) << seed;
+  }
+}
+
+TEST(LidarBoardVerdict, OnePlaneOnlyHasNoBoard) {
+  SyntheticLidarBoardOptions scene;
+  scene.has_board = false;
+  scene.has_floor = false;
+  EXPECT_EQ("no plane of the board's size", VerdictOn(SynthesizeLidarBoard(scene)));
+}
+
+TEST(LidarBoardVerdict, EmptyAndBrokenCloudsHaveTooFewPoints) {
+  PointCloud cloud;
+  EXPECT_EQ("too few points", VerdictOn(cloud));
+  cloud.points.resize(10000);
+  EXPECT_EQ("too few points", VerdictOn(cloud));  // at the origin: no returns
+  for (LidarPoint& point : cloud.points) {
+    point.position_m.setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  EXPECT_EQ("too few points", VerdictOn(cloud));
+}
+
+TEST(LidarBoardVerdict, TwoMillionPointsAreMeasuredToo) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  const PointCloud sweep = SynthesizeLidarBoard(scene);
+  PointCloud dense = sweep;
+  std::mt19937 random(2);
+  while (dense.points.size() < 2000000) {
+    LidarPoint point = sweep.points[dense.points.size() % sweep.points.size()];
+    point.position_m *= static_cast<float>(1.0 + 0.003 * test::UnitGaussian(&random));
+    dense.points.push_back(point);
+  }
+  EXPECT_EQ("found", VerdictOn(dense));
+}
+
+}  // namespace
+}  // namespace voqcal

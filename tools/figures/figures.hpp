@@ -8,5 +8,6 @@ namespace voqcal {
 // number of runs among them) and a callback that prints a table: what was asked, what was reached.
 
 void AddLidarDetection(CLI::App* app);
+void AddSceneCheckPower(CLI::App* app);
 
 }  // namespace voqcal

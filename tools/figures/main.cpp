@@ -8,5 +8,6 @@ int main(int argc, char** argv) {
                "voqcal_figures");
   app.require_subcommand(1);
   voqcal::AddLidarDetection(&app);
+  voqcal::AddSceneCheckPower(&app);
   return voqcal::RunTool(&app, argc, argv, [] {});
 }

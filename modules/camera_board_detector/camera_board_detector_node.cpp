@@ -7,18 +7,40 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "core/expected.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_image.hpp"
 
 namespace voqcal {
 namespace {
 
-// Nothing, and why, for an image that cannot be decoded: one frame's fault, not the module's.
-std::optional<cv::Mat> PictureOf(const image_t& message, std::string* miss) try {
-  return FromMessage(message);
-} catch (const std::runtime_error& error) {
-  *miss = error.what();
-  return {};
+struct Miss {
+  std::string reason;  ///< One of a few, to be counted.
+  std::string detail;
+};
+
+// An image of another size than the camera's is not decoded: every pose would be wrong, and a
+// damaged header must not ask for gigabytes.
+Expected<cv::Mat, Miss> PictureOf(const image_t& message, const CameraModel& camera) {
+  if (message.width != camera.width_px || message.height != camera.height_px) {
+    return Miss{"wrong image size",
+                std::to_string(message.width) + " x " + std::to_string(message.height) +
+                    " px, the camera's are " + std::to_string(camera.width_px) + " x " +
+                    std::to_string(camera.height_px)};
+  }
+  try {
+    return FromMessage(message);
+  } catch (const std::runtime_error& error) {
+    return Miss{"unreadable image", error.what()};
+  }
+}
+
+Expected<CameraBoard, Miss> BoardIn(const image_t& message, const Rig& rig) {
+  const auto picture = PictureOf(message, rig.camera);
+  if (!picture) return picture.error();
+  auto board = DetectCameraBoard(*picture, rig.camera, rig.board, rig.camera_board_detector);
+  if (!board) return Miss{ToString(board.error().fault), board.error().detail};
+  return std::move(*board);
 }
 
 }  // namespace
@@ -30,19 +52,18 @@ CameraBoardDetectorNode::CameraBoardDetectorNode(const Rig& rig, Bus* bus) : rig
 }
 
 void CameraBoardDetectorNode::OnImage(const image_t& message) {
-  std::string miss;
-  std::optional<CameraBoard> board;
-  if (const auto picture = PictureOf(message, &miss)) {
-    // An image of another size is a wrong rig file: it throws, and ends the module.
-    auto found = DetectCameraBoard(*picture, rig_.camera, rig_.board, rig_.camera_board_detector);
-    if (found) {
-      board = std::move(*found);
-    } else {
-      miss = ToString(found.error());
-    }
+  const auto board = BoardIn(message, rig_);
+  const Miss miss = board ? Miss{} : board.error();
+  Count(board ? "boards" : miss.reason);
+  if (board) {
+    for (const SightingWarning& warning : board->warnings) Count("boards: " + warning.reason);
   }
-  Count(miss.empty() ? "boards" : miss);
-  bus_.Publish(rig_.channels.camera_board, CameraBoardMessage(board, miss, message.utime, seq_++));
+  bus_.Publish(rig_.channels.camera_board,
+               CameraBoardMessage(board ? std::optional(*board) : std::nullopt,
+                                  miss.reason,
+                                  miss.detail,
+                                  message.utime,
+                                  seq_++));
 }
 
 }  // namespace voqcal

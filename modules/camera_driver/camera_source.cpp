@@ -7,6 +7,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "camera_driver/video_source.hpp"
 #include "core/simulation/simulation.hpp"
 #include "messaging/encoded_image.hpp"
 #include "rig/atomic_file.hpp"
@@ -23,6 +24,7 @@ class FolderCameraSource : public CameraSource {
 
   std::optional<TimedImage> Next() override {
     const auto file = folder_.Next();
+    has_ended_ = !file;
     if (!file) return {};
     const std::string text = ReadWholeFile(file->path);
     TimedImage image{file->utime, {text.begin(), text.end()}};
@@ -32,8 +34,11 @@ class FolderCameraSource : public CameraSource {
     return image;
   }
 
+  bool HasEnded() const override { return has_ended_; }
+
  private:
   FrameFolder folder_;
+  bool has_ended_ = false;
 };
 
 class SimulatedCameraSource : public CameraSource {
@@ -45,7 +50,8 @@ class SimulatedCameraSource : public CameraSource {
 
   std::optional<TimedImage> Next() override {
     const double time_s = static_cast<double>(num_images_) / rate_hz_;
-    if (time_s > simulation_.DurationS()) return {};
+    has_ended_ = time_s > simulation_.DurationS();
+    if (has_ended_) return {};
     ++num_images_;
     const std::int64_t utime = kSyntheticEpochUtime + std::llround(time_s * 1e6);
     std::vector<std::uint8_t> jpeg;
@@ -54,11 +60,14 @@ class SimulatedCameraSource : public CameraSource {
     return TimedImage{utime, std::move(jpeg)};
   }
 
+  bool HasEnded() const override { return has_ended_; }
+
  private:
   Simulation simulation_;
   double rate_hz_;
   int jpeg_quality_;
   std::int64_t num_images_ = 0;
+  bool has_ended_ = false;
 };
 
 }  // namespace
@@ -70,6 +79,8 @@ std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig) {
       return std::make_unique<FolderCameraSource>(rig.camera_driver);
     case DriverSource::kSimulator:
       return std::make_unique<SimulatedCameraSource>(rig);
+    case DriverSource::kVideo:
+      return MakeVideoSource(rig.camera_driver);
   }
   throw std::logic_error("MakeCameraSource: unknown source");
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "rig/rig.hpp"
@@ -20,12 +21,22 @@ class CameraSource {
  public:
   virtual ~CameraSource() = default;
 
-  /// The next image; nothing when the source has ended.
+  /// The next image; nothing if there is none now, or never will be.
   /// @throws std::runtime_error naming the file and the cause.
   virtual std::optional<TimedImage> Next() = 0;
+
+  /// True once there will never be an image again.
+  virtual bool HasEnded() const = 0;
+
+  /// True if Next waits for the camera's own next frame; else the driver's rate sets the pace.
+  virtual bool SetsThePace() const { return false; }
+
+  /// "running", or what it waits for.
+  virtual std::string State() const { return "running"; }
 };
 
-/// The source that the rig file names. Frames count from kSyntheticEpochUtime.
+/// The source that the rig file names. Frames of folders, files and the
+/// simulator count from kSyntheticEpochUtime.
 std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig);
 
 }  // namespace voqcal

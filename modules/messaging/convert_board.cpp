@@ -101,6 +101,12 @@ camera_board_t ToMessage(const CameraBoard& board) {
     message.corners_px.push_back({corner_px.x(), corner_px.y()});
   }
   message.num_corners = static_cast<std::int32_t>(message.corners_px.size());
+  for (const SightingWarning& warning : board.warnings) {
+    message.warnings.emplace_back();
+    message.warnings.back().reason = warning.reason;
+    message.warnings.back().detail = warning.detail;
+  }
+  message.num_warnings = static_cast<std::int32_t>(message.warnings.size());
   return message;
 }
 
@@ -110,6 +116,9 @@ CameraBoard FromMessage(const camera_board_t& message) {
   board.reprojection_rms_px = message.reprojection_rms_px;
   for (const auto& corner_px : message.corners_px) {
     board.corners_px.emplace_back(corner_px[0], corner_px[1]);
+  }
+  for (const warning_t& warning : message.warnings) {
+    board.warnings.push_back({warning.reason, warning.detail});
   }
   return board;
 }
@@ -130,12 +139,14 @@ lidar_board_t LidarBoardMessage(const std::vector<LidarBoard>& candidates,
 
 camera_board_t CameraBoardMessage(const std::optional<CameraBoard>& board,
                                   const std::string& miss,
+                                  const std::string& detail,
                                   std::int64_t utime,
                                   std::int64_t seq) {
   camera_board_t message = ToMessage(board.value_or(CameraBoard{}));
   message.utime = utime;
   message.seq = seq;
   message.miss = miss;
+  message.detail = detail;
   return message;
 }
 

@@ -38,9 +38,11 @@ lidar_board_t LidarBoardMessage(const std::vector<LidarBoard>& candidates,
                                 const std::string& miss,
                                 std::int64_t utime,
                                 std::int64_t seq);
-/// What the camera detector found in one image; no board needs a `miss`.
+/// What the camera detector found in one image; no board needs a `miss`, and may have a `detail` of
+/// it.
 camera_board_t CameraBoardMessage(const std::optional<CameraBoard>& board,
                                   const std::string& miss,
+                                  const std::string& detail,
                                   std::int64_t utime,
                                   std::int64_t seq);
 

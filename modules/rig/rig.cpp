@@ -12,6 +12,12 @@ std::vector<std::string> DriverOptions::Problems() const {
   if (jpeg_quality < 1 || jpeg_quality > 100) {
     problems.push_back("jpeg_quality must be 1 to 100, is " + std::to_string(jpeg_quality));
   }
+  const int num_named = !device.empty() + !pipeline.empty() + !url.empty();
+  if (source == DriverSource::kVideo && num_named != 1) {
+    problems.push_back("source video needs one of device, pipeline and url, has " +
+                       std::to_string(num_named));
+  }
+  if (!(retry_s > 0)) problems.push_back("retry_s must be positive, is " + std::to_string(retry_s));
   return problems;
 }
 

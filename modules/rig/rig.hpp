@@ -47,7 +47,7 @@ struct Channels {
 /// microseconds since the Unix epoch. Never the wall clock: the same frames get the same times.
 inline constexpr std::int64_t kSyntheticEpochUtime = 1577836800000000;
 
-enum class DriverSource { kFolder, kSimulator };
+enum class DriverSource { kFolder, kSimulator, kVideo };
 
 /// Where a driver's frames come from.
 struct DriverOptions {
@@ -56,7 +56,12 @@ struct DriverOptions {
   std::string file_ending;       ///< For kFolder: only names that end so ("_full.pcd"); empty: all.
   double rate_hz = 10.0;         ///< Frames a second.
   bool is_repeating = false;     ///< For kFolder: starts again after the last file.
-  int jpeg_quality = 95;         ///< Camera only, of simulated images: 1 to 100.
+  int jpeg_quality = 95;         ///< Camera only, of images that are no files yet: 1 to 100.
+  // For kVideo, camera only: one of these three.
+  std::string device;    ///< V4L2: /dev/video0.
+  std::string pipeline;  ///< GStreamer: "... ! appsink".
+  std::string url;       ///< A stream (rtsp://...) or a video file.
+  double retry_s = 1.0;  ///< For kVideo: how long after a loss the camera is sought again.
 
   /// One line for each broken constraint, with its value; empty if the options are usable. Whether
   /// the folder exists is for the driver to say: a rig file also serves where there is no such

@@ -62,6 +62,14 @@ void ReadBoard(YamlSection* top, BoardSpec* board) {
   section.ReadRequired("num_corners_y", &board->num_corners_y);
   section.Read("pattern_offset_x_m", &board->pattern_offset_x_m);
   section.Read("pattern_offset_y_m", &board->pattern_offset_y_m);
+  std::string pattern = "chessboard";
+  section.Read("pattern", &pattern);
+  if (pattern != "chessboard" && pattern != "charuco") {
+    section.AddError("pattern", "must be chessboard or charuco");
+  }
+  board->pattern = pattern == "charuco" ? BoardPattern::kCharuco : BoardPattern::kChessboard;
+  section.Read("dictionary", &board->dictionary);
+  section.Read("marker_m", &board->marker_m);
   if (section.IsComplete()) section.AddProblems(board->Problems());
   section.RefuseUnknownKeys();
 }
@@ -98,7 +106,9 @@ void ReadCamera(YamlSection* top, CameraModel* camera) {
 }
 
 /// What both drivers have in common.
+/// @param has_video  whether `source: video` is one of the choices.
 void ReadFrameSource(const std::filesystem::path& rig_path,
+                     bool has_video,
                      YamlSection* section,
                      DriverOptions* options) {
   std::string source = "folder";
@@ -108,10 +118,14 @@ void ReadFrameSource(const std::filesystem::path& rig_path,
   section->Read("file_ending", &options->file_ending);
   section->Read("rate_hz", &options->rate_hz);
   section->Read("is_repeating", &options->is_repeating);
-  if (source != "folder" && source != "simulator") {
-    section->AddError("source", "must be folder or simulator");
+  if (source == "simulator") {
+    options->source = DriverSource::kSimulator;
+  } else if (source == "video" && has_video) {
+    options->source = DriverSource::kVideo;
+  } else if (source != "folder") {
+    section->AddError(
+        "source", has_video ? "must be folder, simulator or video" : "must be folder or simulator");
   }
-  options->source = source == "simulator" ? DriverSource::kSimulator : DriverSource::kFolder;
   if (!folder.empty()) options->folder = (rig_path.parent_path() / folder).lexically_normal();
 }
 
@@ -119,7 +133,7 @@ void ReadLidarDriver(YamlSection* top,
                      const std::filesystem::path& rig_path,
                      DriverOptions* options) {
   YamlSection section = top->Section("lidar_driver");
-  ReadFrameSource(rig_path, &section, options);
+  ReadFrameSource(rig_path, false, &section, options);
   Finish(*options, &section);
 }
 
@@ -127,8 +141,14 @@ void ReadCameraDriver(YamlSection* top,
                       const std::filesystem::path& rig_path,
                       DriverOptions* options) {
   YamlSection section = top->Section("camera_driver");
-  ReadFrameSource(rig_path, &section, options);
+  ReadFrameSource(rig_path, true, &section, options);
   section.Read("jpeg_quality", &options->jpeg_quality);
+  section.Read("device", &options->device);
+  section.Read("pipeline", &options->pipeline);
+  section.Read("url", &options->url);
+  section.Read("retry_s", &options->retry_s);
+  const bool is_file = !options->url.empty() && options->url.find("://") == std::string::npos;
+  if (is_file) options->url = (rig_path.parent_path() / options->url).lexically_normal().string();
   Finish(*options, &section);
 }
 
@@ -203,6 +223,12 @@ void ReadLidarBoardDetector(YamlSection* top, LidarBoardOptions* options) {
 void ReadCameraBoardDetector(YamlSection* top, CameraBoardOptions* options) {
   YamlSection section = top->Section("camera_board_detector");
   section.Read("max_reprojection_rms_px", &options->max_reprojection_rms_px);
+  section.ReadDegrees("max_edge_width_deg", &options->max_edge_width_rad);
+  section.Read("max_edge_width_squares", &options->max_edge_width_squares);
+  section.Read("min_square_px", &options->min_square_px);
+  section.Read("min_contrast", &options->min_contrast);
+  section.Read("max_outside_share", &options->max_outside_share);
+  section.Read("max_mirrored_probability", &options->max_mirrored_probability);
   Finish(*options, &section);
 }
 

@@ -29,10 +29,10 @@ inline std::vector<SightingMessages> StillFrames(const std::vector<BoardSample>&
     const std::int64_t seq = 4 * stop + i;
     if (i < 3) {
       frames.push_back({LidarBoardMessage({sample.lidar}, "", utime, seq),
-                        CameraBoardMessage(sample.camera, "", utime, seq)});
+                        CameraBoardMessage(sample.camera, "", "", utime, seq)});
     } else {
       frames.push_back({LidarBoardMessage({}, "no plane", utime, seq),
-                        CameraBoardMessage(std::nullopt, "no chessboard", utime, seq)});
+                        CameraBoardMessage(std::nullopt, "no board", "", utime, seq)});
     }
   }
   return frames;

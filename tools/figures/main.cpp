@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   CLI::App app("Measures the accuracy of voqcal's algorithms over many seeded runs.",
                "voqcal_figures");
   app.require_subcommand(1);
+  voqcal::AddCameraDetection(&app);
   voqcal::AddLidarDetection(&app);
   voqcal::AddSceneCheckPower(&app);
   return voqcal::RunTool(&app, argc, argv, [] {});

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,12 +40,20 @@ struct LidarBoard {
   PointCloud points_lidar_m;    ///< The points on the board.
 };
 
+/// What lessens the trust in a sighting: a reason, one of a few, to be counted, and what was
+/// measured.
+struct SightingWarning {
+  std::string reason;  ///< "blurred"
+  std::string detail;  ///< "edge width 4.1 px, at most 3"
+};
+
 /// What the camera board detector says of one image.
 struct CameraBoard {
   BoardPose pose;  ///< In the camera frame.
-  std::vector<Eigen::Vector2d>
-      corners_px;  ///< Inner corners in BoardSpec::InnerCornersBoardM order.
+  /// Inner corners in BoardSpec::InnerCornersBoardM order; NaN: not seen.
+  std::vector<Eigen::Vector2d> corners_px;
   double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();
+  std::vector<SightingWarning> warnings;
 };
 
 /// One pose of the board, seen by both sensors: what calibration is made from.

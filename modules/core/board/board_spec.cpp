@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <map>
 #include <sstream>
 
 namespace voqcal {
@@ -14,7 +16,30 @@ std::string Problem(const char* rule, Value value) {
   return text.str();
 }
 
+// Of a dictionary: the number that its name ends in, but for ArUco's own and AprilTag's (OpenCV's
+// dictionary.hpp).
+int NumMarkers(const std::string& dictionary) {
+  static const std::map<std::string, int> kOthers = {{"aruco_original", 1024},
+                                                     {"apriltag_16h5", 30},
+                                                     {"apriltag_25h9", 35},
+                                                     {"apriltag_36h10", 2320},
+                                                     {"apriltag_36h11", 587}};
+  const auto other = kOthers.find(dictionary);
+  if (other != kOthers.end()) return other->second;
+  return std::atoi(dictionary.c_str() + dictionary.find('_') + 1);
+}
+
 }  // namespace
+
+const std::vector<std::string>& CharucoDictionaries() {
+  static const std::vector<std::string> kNames = {
+      "4x4_50",        "4x4_100",        "4x4_250",       "4x4_1000",      "5x5_50",
+      "5x5_100",       "5x5_250",        "5x5_1000",      "6x6_50",        "6x6_100",
+      "6x6_250",       "6x6_1000",       "7x7_50",        "7x7_100",       "7x7_250",
+      "7x7_1000",      "aruco_original", "apriltag_16h5", "apriltag_25h9", "apriltag_36h10",
+      "apriltag_36h11"};
+  return kNames;
+}
 
 std::vector<std::string> BoardSpec::Problems() const {
   std::vector<std::string> problems;
@@ -39,6 +64,16 @@ std::vector<std::string> BoardSpec::Problems() const {
   require((num_corners_y - 1) * square_m < height_m,
           "the inner corners along y must fit into height_m: (num_corners_y - 1) * square_m",
           (num_corners_y - 1) * square_m);
+  if (pattern != BoardPattern::kCharuco) return problems;
+  const auto& names = CharucoDictionaries();
+  require(std::find(names.begin(), names.end(), dictionary) != names.end(),
+          "dictionary must be a name such as 5x5_100 or apriltag_36h11",
+          dictionary);
+  require(
+      marker_m > 0 && marker_m < square_m, "marker_m must be above 0 and below square_m", marker_m);
+  require((num_corners_x + 1) * (num_corners_y + 1) / 2 <= NumMarkers(dictionary),
+          "the dictionary must have a marker for each white square: their number",
+          (num_corners_x + 1) * (num_corners_y + 1) / 2);
   return problems;
 }
 

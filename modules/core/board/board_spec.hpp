@@ -8,6 +8,11 @@
 
 namespace voqcal {
 
+enum class BoardPattern { kChessboard, kCharuco };
+
+/// ArUco's predefined dictionaries, in OpenCV's order: "4x4_50", ... "apriltag_36h11".
+const std::vector<std::string>& CharucoDictionaries();
+
 /// The calibration board: a flat rectangle with a chessboard on it.
 ///
 /// Board frame: origin at the centre of the rectangle, x along the width, y along the height, z out
@@ -23,6 +28,9 @@ struct BoardSpec {
   /// board's centre is off by twice this.
   double pattern_offset_x_m = 0.0;
   double pattern_offset_y_m = 0.0;
+  BoardPattern pattern = BoardPattern::kChessboard;
+  std::string dictionary = "5x5_100";  ///< For kCharuco: one of CharucoDictionaries().
+  double marker_m = 0.0;               ///< For kCharuco: side of a marker.
 
   /// One line for each broken constraint, with its value; empty if the board is usable.
   std::vector<std::string> Problems() const;

@@ -1,11 +1,15 @@
 #include "core/board/camera_board.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
 #include <opencv2/imgproc.hpp>
 
+#include "core/board/camera_board_view.hpp"
+#include "core/board/charuco_corners.hpp"
 #include "core/board/chessboard_corners.hpp"
 #include "core/board/planar_pose.hpp"
 
@@ -41,25 +45,119 @@ cv::Mat Grey(const cv::Mat& image) {
   return grey;
 }
 
+Expected<std::vector<Eigen::Vector2d>, CameraBoardMiss> FindCorners(const cv::Mat& grey,
+                                                                    const BoardSpec& board) {
+  if (board.pattern == BoardPattern::kCharuco) return FindCharucoCorners(grey, board);
+  const auto corners_px = FindChessboardCorners(grey, board);
+  if (!corners_px) return ExplainPart(grey, board, corners_px.error());
+  return *corners_px;
+}
+
+std::optional<PlanarPose> FitSeenCorners(const CameraModel& camera,
+                                         const BoardSpec& board,
+                                         const std::vector<Eigen::Vector2d>& corners_px) {
+  const std::vector<Eigen::Vector3d> all_board_m = board.InnerCornersBoardM();
+  std::vector<Eigen::Vector3d> seen_board_m;
+  std::vector<Eigen::Vector2d> seen_px;
+  for (std::size_t i = 0; i < all_board_m.size(); ++i) {
+    if (!corners_px[i].allFinite()) continue;
+    seen_board_m.push_back(all_board_m[i]);
+    seen_px.push_back(corners_px[i]);
+  }
+  return FitPlanarPose(camera, seen_board_m, seen_px);
+}
+
+// Edges may be that wide, in pixels, before the image counts as blurred.
+double MaxEdgeWidthPx(const CameraModel& camera, const CameraBoardOptions& options) {
+  constexpr double kSharpPx = 2.0;  // pixels and lens alone make 1.2 to 1.8
+  return std::max(kSharpPx, options.max_edge_width_rad * (camera.fx_px + camera.fy_px) / 2);
+}
+
+// Why an image that fits the board still gives no pose to trust; nothing if it does.
+std::optional<CameraBoardMiss> Untrusted(const PlanarPose& fit,
+                                         const CameraBoardView& view,
+                                         const CameraBoardOptions& options) {
+  const double max_width_px = options.max_edge_width_squares * view.square_px;
+  if (view.edge_width_px > max_width_px) {
+    return CameraBoardMiss{CameraBoardFault::kBlurred,
+                           Measured("edge width",
+                                    view.edge_width_px,
+                                    " px, at this size of squares at most",
+                                    max_width_px)};
+  }
+  if (fit.reprojection_rms_px > options.max_reprojection_rms_px) {
+    return CameraBoardMiss{CameraBoardFault::kPoorFit,
+                           Measured("reprojection RMS",
+                                    fit.reprojection_rms_px,
+                                    " px, at most",
+                                    options.max_reprojection_rms_px)};
+  }
+  return {};
+}
+
+std::vector<SightingWarning> WarningsOf(const PlanarPose& fit,
+                                        const CameraBoardView& view,
+                                        double max_edge_width_px,
+                                        const CameraBoardOptions& options) {
+  std::vector<SightingWarning> warnings;
+  const auto warn_if = [&](bool is_so, CameraBoardFault fault, const std::string& detail) {
+    if (is_so) warnings.push_back({ToString(fault), detail});
+  };
+  warn_if(view.edge_width_px > max_edge_width_px,
+          CameraBoardFault::kBlurred,
+          Measured("edge width", view.edge_width_px, " px, at most", max_edge_width_px));
+  warn_if(view.least_contrast < options.min_contrast,
+          CameraBoardFault::kGlare,
+          Measured("a corner's contrast is",
+                   view.least_contrast,
+                   " of the median, at least",
+                   options.min_contrast));
+  warn_if(view.outside_share > options.max_outside_share,
+          CameraBoardFault::kCutOff,
+          Measured("outside the image lie",
+                   100 * view.outside_share,
+                   " % of the outline, at most",
+                   100 * options.max_outside_share));
+  warn_if(view.square_px < options.min_square_px,
+          CameraBoardFault::kTooSmall,
+          Measured("squares of", view.square_px, " px, at least", options.min_square_px));
+  warn_if(fit.mirrored_probability > options.max_mirrored_probability,
+          CameraBoardFault::kAmbiguous,
+          Measured("the mirrored tilt has a probability of",
+                   fit.mirrored_probability,
+                   ", at most",
+                   options.max_mirrored_probability));
+  return warnings;
+}
+
 }  // namespace
 
 std::vector<std::string> CameraBoardOptions::Problems() const {
-  if (max_reprojection_rms_px > 0 && std::isfinite(max_reprojection_rms_px)) return {};
-  std::ostringstream text;
-  text << "max_reprojection_rms_px must be positive and finite, is " << max_reprojection_rms_px;
-  return {text.str()};
-}
-
-std::string ToString(CameraBoardMiss miss) {
-  switch (miss) {
-    case CameraBoardMiss::kNoChessboard:
-      return "no chessboard";
-    case CameraBoardMiss::kNoPose:
-      return "no pose";
-    case CameraBoardMiss::kPoorFit:
-      return "poor fit";
-  }
-  return "unknown";
+  std::vector<std::string> problems;
+  const auto require = [&problems](bool is_met, const char* rule, double value) {
+    if (is_met) return;
+    std::ostringstream text;
+    text << rule << ", is " << value;
+    problems.push_back(text.str());
+  };
+  const auto is_positive = [](double value) { return value > 0 && std::isfinite(value); };
+  const auto is_share = [](double value) { return value >= 0 && value <= 1; };
+  require(is_positive(max_reprojection_rms_px),
+          "max_reprojection_rms_px must be positive and finite",
+          max_reprojection_rms_px);
+  require(is_positive(max_edge_width_rad),
+          "max_edge_width_rad must be positive and finite",
+          max_edge_width_rad);
+  require(is_positive(max_edge_width_squares),
+          "max_edge_width_squares must be positive and finite",
+          max_edge_width_squares);
+  require(min_square_px >= 0, "min_square_px must not be negative", min_square_px);
+  require(is_share(min_contrast), "min_contrast must be 0 to 1", min_contrast);
+  require(is_share(max_outside_share), "max_outside_share must be 0 to 1", max_outside_share);
+  require(is_share(max_mirrored_probability),
+          "max_mirrored_probability must be 0 to 1",
+          max_mirrored_probability);
+  return problems;
 }
 
 Expected<CameraBoard, CameraBoardMiss> DetectCameraBoard(const cv::Mat& image,
@@ -71,17 +169,20 @@ Expected<CameraBoard, CameraBoardMiss> DetectCameraBoard(const cv::Mat& image,
   RequireUsable("options", options.Problems());
   RequireImage(image, camera);
 
-  const auto corners_px = FindChessboardCorners(Grey(image), board);
-  if (!corners_px) return CameraBoardMiss::kNoChessboard;
-  const auto fit = FitPlanarPose(camera, board.InnerCornersBoardM(), *corners_px);
-  if (!fit) return CameraBoardMiss::kNoPose;
-  if (fit->reprojection_rms_px > options.max_reprojection_rms_px) return CameraBoardMiss::kPoorFit;
+  const cv::Mat grey = Grey(image);
+  const auto corners_px = FindCorners(grey, board);
+  if (!corners_px) return corners_px.error();
+  const auto fit = FitSeenCorners(camera, board, *corners_px);
+  if (!fit) return CameraBoardMiss{CameraBoardFault::kNoPose, ""};
+  const CameraBoardView view = MeasureView(grey, camera, board, fit->T_camera_board, *corners_px);
+  if (const auto miss = Untrusted(*fit, view, options)) return *miss;
 
   CameraBoard found;
   found.pose = PoseFromTransform(fit->T_camera_board, board);
   found.pose.covariance = fit->covariance;
   found.corners_px = *corners_px;
   found.reprojection_rms_px = fit->reprojection_rms_px;
+  found.warnings = WarningsOf(*fit, view, MaxEdgeWidthPx(camera, options), options);
   return found;
 }
 

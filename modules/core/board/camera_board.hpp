@@ -7,31 +7,34 @@
 
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
+#include "core/board/camera_board_fault.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/expected.hpp"
 
 namespace voqcal {
 
-/// How the camera board detector searches one image.
+/// How the camera board detector searches one image, and when it warns.
 struct CameraBoardOptions {
   double max_reprojection_rms_px = 1.5;  ///< A worse fit is not this board, or not this camera.
+  /// Edges between squares that are wider make the image blurred: as an angle of view, so that it
+  /// holds for every resolution. Sharp edges of 2 px are always allowed.
+  double max_edge_width_rad = 0.003;
+  /// Edges wider than this share of a square run into each other: there is no pose to trust.
+  double max_edge_width_squares = 0.7;
+  double min_square_px = 8.0;      ///< Smaller squares make the board too small.
+  double min_contrast = 0.5;       ///< Of the palest corner, as share of the median; less is glare.
+  double max_outside_share = 0.0;  ///< Of the outline; more, and the board is cut off.
+  double max_mirrored_probability = 0.01;  ///< Of the other tilt; more makes the pose ambiguous.
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;
 };
 
-/// Why an image shows no board.
-enum class CameraBoardMiss {
-  kNoChessboard,  ///< The chessboard finder found nothing.
-  kNoPose,        ///< Corners, but no pose in front of the camera explains them.
-  kPoorFit,       ///< Reprojection RMS above the option.
-};
-
-std::string ToString(CameraBoardMiss miss);  ///< "no chessboard", ... as MODULE_STATUS counts them.
-
-/// Finds the chessboard in one image and its pose by all corners with the true lens model.
+/// Finds the board in one image and its pose by all corners seen, with the true lens model.
 ///
-/// Of the two half-turns that the pattern cannot tell apart, the one is taken whose board y axis
+/// Of a chessboard every corner must be seen; of a ChArUco board a part is enough.
+///
+/// Of the two half-turns that a chessboard may not tell apart, the one is taken whose board y axis
 /// points up in the image (or, if horizontal, whose x axis does), so that a session is consistent.
 ///
 /// @param image  8-bit, 1 or 3 channels (BGR), of the camera's size.

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/board/corner_grid.hpp"
+#include "core/board/missing_corners.hpp"
 #include "core/board/x_corners.hpp"
 
 namespace voqcal {
@@ -99,6 +101,13 @@ Corners Refined(const std::vector<cv::Mat>& levels,
   return Rescaled(coarse, levels[found].size(), levels[0].size());
 }
 
+// Few enough corners are missing that the others say where they must be.
+bool IsNearlyWhole(const CornerGrid& grid, const cv::Size& pattern) {
+  constexpr double kMinShare = 0.7;
+  return grid.size == pattern && grid.num_found < pattern.area() &&
+         grid.num_found >= kMinShare * pattern.area();
+}
+
 // A grid of corners in the image, x fastest, and the turns that it allows.
 struct Grid {
   int num_x;
@@ -137,7 +146,22 @@ struct Grid {
 // How far an axis points up in the image, -1 to 1: pixel y points down.
 double Upness(const Eigen::Vector2d& axis_px) { return -axis_px.y() / axis_px.norm(); }
 
-void Orient(Grid* grid) {
+// Where num_x + num_y is odd the pattern tells its two half-turns apart: whether this is the one
+// with a bright square at its corner (0, 0), and so with bright squares wherever i + j is even.
+bool IsBrightFirst(const cv::Mat& grey, const Grid& grid) {
+  double even_minus_odd = 0;
+  for (int j = 0; j + 1 < grid.num_y; ++j) {
+    for (int i = 0; i + 1 < grid.num_x; ++i) {
+      const Eigen::Vector2d centre_px =
+          (grid.At(i, j) + grid.At(i + 1, j) + grid.At(i, j + 1) + grid.At(i + 1, j + 1)) / 4;
+      const double level = grey.at<std::uint8_t>(cvRound(centre_px.y()), cvRound(centre_px.x()));
+      even_minus_odd += (i + j) % 2 == 0 ? level : -level;
+    }
+  }
+  return even_minus_odd > 0;
+}
+
+void Orient(const cv::Mat& grey, Grid* grid) {
   // Seen from the front with board y up, board x points right: in pixels, y down, x cross y < 0.
   const Eigen::Vector2d x = grid->AxisX();
   const Eigen::Vector2d y = grid->AxisY();
@@ -147,6 +171,10 @@ void Orient(Grid* grid) {
       std::abs(Upness(grid->AxisX())) > std::abs(Upness(grid->AxisY()))) {
     grid->TurnByQuarter();
   }
+  if ((grid->num_x + grid->num_y) % 2 == 1) {
+    if (IsBrightFirst(grey, *grid)) grid->TurnByHalf();
+    return;
+  }
   constexpr double kHorizontal = 1e-3;  // below what corners of 0.1 px say of an axis of 100 px
   const double y_up = Upness(grid->AxisY());
   const double up = std::abs(y_up) > kHorizontal ? y_up : Upness(grid->AxisX());
@@ -155,23 +183,30 @@ void Orient(Grid* grid) {
 
 }  // namespace
 
-std::optional<std::vector<Eigen::Vector2d>> FindChessboardCorners(const cv::Mat& grey,
-                                                                  const BoardSpec& board) {
+Expected<std::vector<Eigen::Vector2d>, CornerGrid> FindChessboardCorners(const cv::Mat& grey,
+                                                                         const BoardSpec& board) {
   const cv::Size pattern(board.num_corners_x, board.num_corners_y);
   const std::vector<cv::Mat> levels = Pyramid(grey);
   // A board's corners are among those of most contrast; what is beyond is texture and noise.
   const auto max_corners = static_cast<std::size_t>(std::max(600, 3 * pattern.area()));
+  CornerGrid largest_part;
   for (std::size_t level = levels.size(); level-- > 0;) {
-    const Corners coarse = FindCornerGrid(FindXCorners(levels[level], max_corners), pattern);
-    if (coarse.empty()) continue;
+    CornerGrid coarse = FindCornerGrid(FindXCorners(levels[level], max_corners), pattern);
+    if (IsNearlyWhole(coarse, pattern)) coarse = WithMissingCorners(levels[level], coarse);
+    if (coarse.num_found < pattern.area()) {
+      if (coarse.num_found <= largest_part.num_found) continue;
+      coarse.corners = Rescaled(coarse.corners, levels[level].size(), grey.size());
+      largest_part = std::move(coarse);
+      continue;
+    }
     Grid grid{pattern.width, pattern.height, {}};
-    for (const cv::Point2f& p : Refined(levels, level, coarse, pattern)) {
+    for (const cv::Point2f& p : Refined(levels, level, coarse.corners, pattern)) {
       grid.corners_px.emplace_back(p.x, p.y);
     }
-    Orient(&grid);
+    Orient(grey, &grid);
     return grid.corners_px;
   }
-  return std::nullopt;
+  return largest_part;
 }
 
 }  // namespace voqcal

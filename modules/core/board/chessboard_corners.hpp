@@ -1,23 +1,26 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
 #include "core/board/board_spec.hpp"
+#include "core/board/corner_grid.hpp"
+#include "core/expected.hpp"
 
 namespace voqcal {
 
 /// The chessboard's inner corners in one grey image, to sub-pixel accuracy, in the order of
-/// BoardSpec::InnerCornersBoardM; nothing if there is no chessboard of that size.
+/// BoardSpec::InnerCornersBoardM; if there is no whole chessboard of that size, the largest part of
+/// one, to about a pixel.
 ///
-/// Of the turns that the pattern cannot tell apart, the one whose board y axis points up in the
-/// image (or, if y is horizontal, whose x axis does). The same whatever cv::setNumThreads says.
+/// Where the numbers of corners have an odd sum, the square at (-x, -y) is a dark one. Else the
+/// pattern looks the same after half a turn: of the two, the one whose board y axis points up in
+/// the image (or, if y is horizontal, whose x axis does). The same whatever cv::setNumThreads says.
 ///
 /// @param grey  8-bit, 1 channel, not empty.
-std::optional<std::vector<Eigen::Vector2d>> FindChessboardCorners(const cv::Mat& grey,
-                                                                  const BoardSpec& board);
+Expected<std::vector<Eigen::Vector2d>, CornerGrid> FindChessboardCorners(const cv::Mat& grey,
+                                                                         const BoardSpec& board);
 
 }  // namespace voqcal

@@ -2,98 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "core/board/corner_links.hpp"
+
 namespace voqcal {
 namespace {
 
-constexpr int kNone = -1;
-
-// The four ways to leave a corner: along axes[0], axes[1], and against them.
-constexpr int kNumWays = 4;
-cv::Point2f Direction(const XCorner& corner, int way) {
-  const cv::Point2f& axis = corner.axes[way % 2];
-  return way < 2 ? axis : -axis;
-}
-
-// Neighbours swap dark and bright, so the edge that joins them is axes[0] of one and axes[1] of the
-// other.
-bool MayJoin(const XCorner& from, const XCorner& to, int way, const cv::Point2f& step) {
-  constexpr float kMaxTangent = 0.36F;    // 20 degrees: twice what a ring of 16 pixels may be off
-  constexpr float kMaxSine = 0.5F;        // 30 degrees between edges across: perspective turns them
-  constexpr float kMaxContrastRatio = 3;  // light changes slowly over a board
-  const cv::Point2f& other = to.axes[1 - way % 2];
-  return std::abs(step.cross(other)) < kMaxTangent * std::abs(step.dot(other)) &&
-         std::abs(from.axes[1 - way % 2].cross(to.axes[way % 2])) < kMaxSine &&
-         to.contrast < kMaxContrastRatio * from.contrast &&
-         from.contrast < kMaxContrastRatio * to.contrast;
-}
-
-using Links = std::vector<std::array<int, kNumWays>>;  // the nearest corner each way, or kNone
-
-Links NearestCorners(const std::vector<XCorner>& corners) {
-  constexpr float kMaxTangent = 0.36F;
-  constexpr float kMinStepPx = 3.0F;
-  const int num = static_cast<int>(corners.size());
-  Links links(corners.size());
-  for (int p = 0; p < num; ++p) {
-    std::array<float, kNumWays> nearest;
-    nearest.fill(HUGE_VALF);
-    links[p].fill(kNone);
-    for (int q = 0; q < num; ++q) {
-      const cv::Point2f step = corners[q].position_px - corners[p].position_px;
-      const float distance2 = step.dot(step);
-      if (distance2 < kMinStepPx * kMinStepPx) continue;
-      const std::array<float, 2> along{step.dot(corners[p].axes[0]), step.dot(corners[p].axes[1])};
-      for (int axis = 0; axis < 2; ++axis) {
-        const int way = along[axis] > 0 ? axis : axis + 2;
-        if (distance2 >= nearest[way]) continue;
-        if (std::abs(step.cross(corners[p].axes[axis])) >= kMaxTangent * std::abs(along[axis])) {
-          continue;
-        }
-        if (!MayJoin(corners[p], corners[q], way, step)) continue;
-        nearest[way] = distance2;
-        links[p][way] = q;
-      }
-    }
-  }
-  return links;
-}
-
-// Drops links that are much longer than the link the other way: from a board's rim, such a link
-// leads to some corner of the room.
-Links WithoutLeaps(const std::vector<XCorner>& corners, const Links& links) {
-  constexpr float kMaxStepRatio = 1.6F;  // of neighbouring squares, however tilted the board
-  const auto length_px = [&](std::size_t p, int q) {
-    const cv::Point2f step = corners[p].position_px - corners[q].position_px;
-    return std::hypot(step.x, step.y);
-  };
-  Links kept = links;
-  for (std::size_t p = 0; p < links.size(); ++p) {
-    for (int way = 0; way < kNumWays; ++way) {
-      const int q = links[p][way];
-      const int other = links[p][(way + 2) % kNumWays];
-      if (q == kNone || other == kNone) continue;
-      if (length_px(p, q) > kMaxStepRatio * length_px(p, other)) kept[p][way] = kNone;
-    }
-  }
-  return kept;
-}
-
-// Keeps the links that lead back.
-Links Mutual(const Links& links) {
-  Links mutual = links;
-  for (std::size_t p = 0; p < links.size(); ++p) {
-    for (int& q : mutual[p]) {
-      if (q == kNone) continue;
-      const auto& back = links[q];
-      if (std::find(back.begin(), back.end(), static_cast<int>(p)) == back.end()) q = kNone;
-    }
-  }
-  return mutual;
-}
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+const cv::Point2f kNoPoint(kNan, kNan);
 
 // Which corner lies where in a grid; column and row count from any corner.
 struct Cell {
@@ -136,7 +56,7 @@ int WayTowards(const XCorner& corner, int axis, const cv::Point2f& direction) {
 // first.
 Cells JoinedTo(int first,
                const std::vector<XCorner>& corners,
-               const Links& links,
+               const CornerLinks& links,
                std::vector<bool>* is_used) {
   Cells cells;
   std::vector<Placed> queue{{first, {0, 0}, 0, 1}};
@@ -147,7 +67,7 @@ Cells JoinedTo(int first,
     const XCorner& corner = corners[p.corner];
     for (int way = 0; way < kNumWays; ++way) {
       const int q = links[p.corner][way];
-      if (q == kNone || (*is_used)[q]) continue;
+      if (q == kNoCorner || (*is_used)[q]) continue;
       Cell cell = p.cell;
       if (way % 2 == p.way_to_column % 2) {
         cell.column += way == p.way_to_column ? 1 : -1;
@@ -227,7 +147,7 @@ int CornerNear(const std::vector<XCorner>& corners,
     }
     return true;
   };
-  int nearest = kNone;
+  int nearest = kNoCorner;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const cv::Point2f d = corners[i].position_px - position_px;
     const float distance_px = std::hypot(d.x, d.y);
@@ -256,7 +176,7 @@ void Complete(const std::vector<XCorner>& corners, int max_side, Cells* cells) {
         if (!position) continue;
         const int found = CornerNear(
             corners, is_taken, *cells, {column, row}, *position, kMaxMissSteps * step_px);
-        if (found == kNone) continue;
+        if (found == kNoCorner) continue;
         cells->emplace(Cell{column, row}, found);
         is_taken[found] = true;
         has_grown = true;
@@ -288,43 +208,47 @@ void DropSparseLines(Cells* cells) {
   }
 }
 
-// The cells in the pattern's order if they fill it, upright or lying.
-std::vector<cv::Point2f> InOrder(const Cells& cells,
-                                 const std::vector<XCorner>& corners,
-                                 const cv::Size& pattern) {
+// The cells of a grid that is no larger than the pattern, in the pattern's order, upright or lying;
+// NaN where there is none.
+std::optional<CornerGrid> InOrder(const Cells& cells,
+                                  const std::vector<XCorner>& corners,
+                                  const cv::Size& pattern) {
   const Extent extent = ExtentOf(cells);
-  if (cells.size() != static_cast<std::size_t>(pattern.area())) return {};
-  const bool is_upright = extent.Columns() == pattern.width && extent.Rows() == pattern.height;
-  if (!is_upright && !(extent.Columns() == pattern.height && extent.Rows() == pattern.width)) {
+  const bool is_upright = extent.Columns() <= pattern.width && extent.Rows() <= pattern.height;
+  if (!is_upright && !(extent.Columns() <= pattern.height && extent.Rows() <= pattern.width)) {
     return {};
   }
-  std::vector<cv::Point2f> ordered;
-  for (int j = 0; j < pattern.height; ++j) {
-    for (int i = 0; i < pattern.width; ++i) {
-      const Cell cell{extent.first.column + (is_upright ? i : j),
-                      extent.first.row + (is_upright ? j : i)};
-      ordered.push_back(corners[cells.at(cell)].position_px);
-    }
+  CornerGrid grid;
+  grid.size = is_upright ? cv::Size(extent.Columns(), extent.Rows())
+                         : cv::Size(extent.Rows(), extent.Columns());
+  grid.corners.assign(static_cast<std::size_t>(grid.size.area()), kNoPoint);
+  grid.num_found = static_cast<int>(cells.size());
+  for (const auto& [cell, corner] : cells) {
+    const int column = cell.column - extent.first.column;
+    const int row = cell.row - extent.first.row;
+    const int i = is_upright ? column : row;
+    const int j = is_upright ? row : column;
+    grid.corners[j * grid.size.width + i] = corners[corner].position_px;
   }
-  return ordered;
+  return grid;
 }
 
 // Steps along a row or column change slowly, by perspective and lens: in squares of 1 / 10 of the
 // distance by up to 1 / 5. A chance corner in place of a missed one breaks this.
-bool IsSmooth(const std::vector<cv::Point2f>& ordered, const cv::Size& pattern) {
+bool IsSmooth(const CornerGrid& grid) {
   constexpr float kMaxChangeSteps = 0.25F;
   constexpr float kPositionErrorPx = 1.0F;  // four corners of 0.2 px make this one in a thousand
   const auto is_smooth_at = [&](int k, int stride) {
-    const cv::Point2f step = ordered[k] - ordered[k - stride];
-    const cv::Point2f change = ordered[k + stride] - ordered[k] - step;
-    return std::hypot(change.x, change.y) <
-           kMaxChangeSteps * std::hypot(step.x, step.y) + kPositionErrorPx;
+    const cv::Point2f step = grid.corners[k] - grid.corners[k - stride];
+    const cv::Point2f change = grid.corners[k + stride] - grid.corners[k] - step;
+    const float max_change_px = kMaxChangeSteps * std::hypot(step.x, step.y) + kPositionErrorPx;
+    return !(std::hypot(change.x, change.y) >= max_change_px);  // NaN: nothing to judge
   };
-  for (int j = 0; j < pattern.height; ++j) {
-    for (int i = 0; i < pattern.width; ++i) {
-      const int k = j * pattern.width + i;
-      if (i > 0 && i + 1 < pattern.width && !is_smooth_at(k, 1)) return false;
-      if (j > 0 && j + 1 < pattern.height && !is_smooth_at(k, pattern.width)) return false;
+  for (int j = 0; j < grid.size.height; ++j) {
+    for (int i = 0; i < grid.size.width; ++i) {
+      const int k = j * grid.size.width + i;
+      if (i > 0 && i + 1 < grid.size.width && !is_smooth_at(k, 1)) return false;
+      if (j > 0 && j + 1 < grid.size.height && !is_smooth_at(k, grid.size.width)) return false;
     }
   }
   return true;
@@ -332,10 +256,10 @@ bool IsSmooth(const std::vector<cv::Point2f>& ordered, const cv::Size& pattern) 
 
 }  // namespace
 
-std::vector<cv::Point2f> FindCornerGrid(const std::vector<XCorner>& corners,
-                                        const cv::Size& pattern) {
-  const Links links = Mutual(WithoutLeaps(corners, Mutual(NearestCorners(corners))));
+CornerGrid FindCornerGrid(const std::vector<XCorner>& corners, const cv::Size& pattern) {
+  const CornerLinks links = LinkCorners(corners);
   std::vector<bool> is_used(corners.size(), false);
+  CornerGrid largest;
   for (std::size_t first = 0; first < corners.size(); ++first) {
     if (is_used[first]) continue;
     Cells cells = JoinedTo(static_cast<int>(first), corners, links, &is_used);
@@ -343,10 +267,12 @@ std::vector<cv::Point2f> FindCornerGrid(const std::vector<XCorner>& corners,
     if (cells.size() < kMinSeed) continue;
     Complete(corners, std::max(pattern.width, pattern.height), &cells);
     DropSparseLines(&cells);
-    std::vector<cv::Point2f> ordered = InOrder(cells, corners, pattern);
-    if (!ordered.empty() && IsSmooth(ordered, pattern)) return ordered;
+    const auto grid = InOrder(cells, corners, pattern);
+    if (!grid || grid->num_found <= largest.num_found || !IsSmooth(*grid)) continue;
+    largest = *grid;
+    if (largest.num_found == pattern.area()) break;
   }
-  return {};
+  return largest;
 }
 
 }  // namespace voqcal

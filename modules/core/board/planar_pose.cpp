@@ -121,17 +121,41 @@ bool IsSeenFromFront(const CameraModel& camera,
   });
 }
 
+// Weighs the second minimum of the squared errors. With residuals of variance s^2, by their
+// likelihoods:
+//     p_mirrored / p_best = exp(-(sum of squares of mirrored - of best) / (2 s^2))
+// and the pose's second moment about the best pose gains p d d', d being the difference.
+void AddMirrored(const PlanarPose& mirrored, std::size_t num_points, PlanarPose* best) {
+  const auto n = static_cast<double>(num_points);
+  const Vector6d difference = DifferenceLeft(best->T_camera_board, mirrored.T_camera_board);
+  // Within 3 sigma they are one minimum, found twice or flat between.
+  constexpr double kSameChi2 = 9.0;
+  if (!(difference.dot(best->covariance.ldlt().solve(difference)) > kSameChi2)) return;
+  const double best_px2 = n * best->reprojection_rms_px * best->reprojection_rms_px;
+  const double mirrored_px2 = n * mirrored.reprojection_rms_px * mirrored.reprojection_rms_px;
+  const double variance_px2 = best_px2 / std::max(1.0, 2 * n - 6);
+  const double odds = std::exp(-(mirrored_px2 - best_px2) / (2 * variance_px2));
+  best->mirrored_probability = odds / (1 + odds);
+  best->covariance += best->mirrored_probability * difference * difference.transpose();
+}
+
 }  // namespace
 
 std::optional<PlanarPose> FitPlanarPose(const CameraModel& camera,
                                         const std::vector<Eigen::Vector3d>& points_board_m,
                                         const std::vector<Eigen::Vector2d>& pixels_px) {
-  std::optional<PlanarPose> best;
+  std::vector<PlanarPose> minima;
   for (const Eigen::Isometry3d& start : StartPoses(camera, points_board_m, pixels_px)) {
     const PlanarPose pose = Refined(camera, points_board_m, pixels_px, start);
     if (!IsSeenFromFront(camera, points_board_m, pose)) continue;
-    if (!best || pose.reprojection_rms_px < best->reprojection_rms_px) best = pose;
+    minima.push_back(pose);
   }
+  if (minima.empty()) return {};
+  std::stable_sort(minima.begin(), minima.end(), [](const PlanarPose& a, const PlanarPose& b) {
+    return a.reprojection_rms_px < b.reprojection_rms_px;
+  });
+  PlanarPose best = minima.front();
+  if (minima.size() > 1) AddMirrored(minima[1], pixels_px.size(), &best);
   return best;
 }
 

@@ -16,9 +16,13 @@ namespace voqcal {
 struct PlanarPose {
   Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();
   /// Of [rotation_rad; translation_m], perturbed on the left (camera) side: s^2 (J'J)^-1, where s^2
-  /// is the residuals' variance, sum of squares / (2 N - 6).
+  /// is the residuals' variance, sum of squares / (2 N - 6); plus p d d' of the mirrored pose: its
+  /// probability and its difference from this one.
   Matrix6d covariance = Matrix6d::Zero();
   double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();
+  /// Probability p of the mirrored pose: far away, a plane tilted the other way looks nearly the
+  /// same. 0 if it is no other pose than this one.
+  double mirrored_probability = 0.0;
 };
 
 /// The pose with the least sum of squared pixel errors, through the true lens model; nothing if

@@ -27,7 +27,7 @@ TEST(CameraBoardAccuracy, AgreesWithTheAuthorsFeatures) {
     const auto file = session / "images" / ("pose" + std::to_string(theirs.id) + ".png");
     const auto ours = DetectCameraBoard(
         cv::imread(file.string()), rig.camera, rig.board, rig.camera_board_detector);
-    ASSERT_TRUE(ours) << file << ": " << ToString(ours.error());
+    ASSERT_TRUE(ours) << file << ": " << ToString(ours.error().fault);
     const BoardPose& pose = theirs.camera.pose;
     normal_errors_deg.push_back(AngleBetween(ours->pose.normal, pose.normal) * 180 / M_PI);
     centre_errors_m.push_back((ours->pose.centre_m - pose.centre_m).norm());

@@ -1,6 +1,7 @@
 #include "core/board/camera_board.hpp"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -38,7 +39,7 @@ TEST(DetectCameraBoard, FindsARenderedBoardThroughEachLens) {
     const CameraModel camera = test::SmallCamera(lens);
     const cv::Mat image = test::RenderBoard(camera, kBoard, BoardAhead(0.5));
     const auto found = DetectCameraBoard(image, camera, kBoard, {});
-    ASSERT_TRUE(found) << ToString(lens) << ": " << ToString(found.error());
+    ASSERT_TRUE(found) << ToString(lens) << ": " << ToString(found.error().fault);
     EXPECT_THAT(TransformFromPose(found->pose),
                 test::IsNear(BoardAhead(0.5), kRotationTolerance, kTranslationToleranceM));
     EXPECT_LT(found->reprojection_rms_px, 0.2);
@@ -57,21 +58,29 @@ TEST(DetectCameraBoard, TakesTheHalfTurnWhoseYPointsUp) {
               test::IsNear(BoardAhead(0.5), kRotationTolerance, kTranslationToleranceM));
 }
 
+std::optional<CameraBoardFault> FaultOf(const cv::Mat& image,
+                                        const CameraModel& camera,
+                                        const CameraBoardOptions& options) {
+  const auto found = DetectCameraBoard(image, camera, kBoard, options);
+  if (found) return {};
+  return found.error().fault;
+}
+
 TEST(DetectCameraBoard, SaysWhyThereIsNoBoard) {
   const CameraModel camera = test::SmallCamera(LensModel::kPlumbBob);
   const cv::Mat plain(camera.height_px, camera.width_px, CV_8UC3, cv::Scalar::all(90));
-  EXPECT_EQ(DetectCameraBoard(plain, camera, kBoard, {}).error(), CameraBoardMiss::kNoChessboard);
+  EXPECT_EQ(FaultOf(plain, camera, {}), CameraBoardFault::kNoBoard);
   cv::Mat noise(camera.height_px, camera.width_px, CV_8UC1);
   cv::RNG(7).fill(noise, cv::RNG::UNIFORM, 0, 256);
-  EXPECT_EQ(DetectCameraBoard(noise, camera, kBoard, {}).error(), CameraBoardMiss::kNoChessboard);
+  EXPECT_EQ(FaultOf(noise, camera, {}), CameraBoardFault::kNoBoard);
 
   const cv::Mat image = test::RenderBoard(camera, kBoard, BoardAhead(0));
   CameraBoardOptions strict;
   strict.max_reprojection_rms_px = 1e-6;
-  EXPECT_EQ(DetectCameraBoard(image, camera, kBoard, strict).error(), CameraBoardMiss::kPoorFit);
+  EXPECT_EQ(FaultOf(image, camera, strict), CameraBoardFault::kPoorFit);
   CameraModel folded = camera;  // every pixel of the board lies beyond the largest distorted radius
   folded.distortion = {-1000};
-  EXPECT_EQ(DetectCameraBoard(image, folded, kBoard, {}).error(), CameraBoardMiss::kNoPose);
+  EXPECT_EQ(FaultOf(image, folded, {}), CameraBoardFault::kNoPose);
 }
 
 TEST(DetectCameraBoard, RefusesImagesThatAreNotTheCameras) {
@@ -130,7 +139,7 @@ TEST(DetectCameraBoard, FindsEveryBoardOfTheRealSession) {
     ++num_images;
     const cv::Mat image = cv::imread(file.string());
     const auto found = DetectCameraBoard(image, test::RealCamera(), kBoard, {});
-    ASSERT_TRUE(found) << file << ": " << ToString(found.error());
+    ASSERT_TRUE(found) << file << ": " << ToString(found.error().fault);
     EXPECT_LT(found->reprojection_rms_px, 0.5) << file;
     rms_sum_px += found->reprojection_rms_px;
     const auto& corners = found->pose.corners_m;

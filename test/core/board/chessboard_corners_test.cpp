@@ -100,6 +100,16 @@ TEST(FindChessboardCorners, TakesTheQuarterTurnWhoseYPointsUp) {
   }
 }
 
+TEST(FindChessboardCorners, TellsTheHalfTurnOfAnOddPatternByItsShade) {
+  const BoardSpec odd{0.61, 0.85, 0.095, 5, 6, 0, 0};
+  for (const double roll_rad : {0.3, 0.3 + M_PI, M_PI / 2, -M_PI / 2}) {
+    const auto found =
+        FindChessboardCorners(test::RenderBoard(kCamera, odd, BoardAhead(roll_rad)), odd);
+    ASSERT_TRUE(found) << roll_rad;
+    EXPECT_LT(WorstErrorPx(*found, odd, BoardAhead(roll_rad)), kCleanPx) << roll_rad;
+  }
+}
+
 TEST(FindChessboardCorners, RefusesBoardsOfOtherSizesAndHiddenCorners) {
   const cv::Mat image = test::RenderBoard(kCamera, kBoard, BoardAhead(0.7));
   for (const auto& [num_x, num_y] : {std::pair(4, 6), {5, 6}, {4, 7}, {6, 7}, {5, 8}, {7, 9}}) {

@@ -178,7 +178,7 @@ TEST(LidarBoardMessage, IsRefusedIfRingsAreMissing) {
 TEST(CameraBoardMessage, ComesBackExactly) {
   Numbers numbers;
   const CameraBoard board = Camera(&numbers);
-  const camera_board_t message = OverTheWire(CameraBoardMessage(board, "", 12, 3));
+  const camera_board_t message = OverTheWire(CameraBoardMessage(board, "", "", 12, 3));
   EXPECT_EQ(message.seq, 3);
   const CameraSighting sighting = SightingFromMessage(message);
   EXPECT_EQ(sighting.utime, 12);
@@ -187,10 +187,10 @@ TEST(CameraBoardMessage, ComesBackExactly) {
 }
 
 TEST(CameraBoardMessage, GivesTheReasonForNone) {
-  const CameraSighting sighting =
-      SightingFromMessage(OverTheWire(CameraBoardMessage({}, "no chessboard", 12, 3)));
+  const CameraSighting sighting = SightingFromMessage(
+      OverTheWire(CameraBoardMessage({}, "cut off", "28 of 35 corners", 12, 3)));
   EXPECT_FALSE(sighting.board);
-  EXPECT_EQ(sighting.miss, "no chessboard");
+  EXPECT_EQ(sighting.miss, "cut off");
 }
 
 }  // namespace

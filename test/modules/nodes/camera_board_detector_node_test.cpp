@@ -1,10 +1,11 @@
 #include "camera_board_detector/camera_board_detector_node.hpp"
 
-#include <exception>
+#include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_image.hpp"
@@ -16,7 +17,6 @@
 namespace voqcal {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -81,21 +81,54 @@ TEST_F(CameraBoardDetectorNodeTest, CountsACorruptJpegAndGoesOn) {
   Send(broken);
   Send(good);
   ASSERT_THAT(found(), SizeIs(2));
-  EXPECT_THAT(found()[0].miss, HasSubstr("the JPEG is cut off"));
+  EXPECT_EQ(found()[0].miss, "unreadable image");
+  EXPECT_THAT(found()[0].detail, HasSubstr("the JPEG is cut off"));
   EXPECT_EQ(found()[1].miss, "");
-  EXPECT_EQ(node_.counters(), (test::Counters{{"boards", 1}, {found()[0].miss, 1}}));
+  EXPECT_EQ(node_.counters(), (test::Counters{{"boards", 1}, {"unreadable image", 1}}));
 }
 
-TEST_F(CameraBoardDetectorNodeTest, ThrowsBothSizesForAnImageOfAnotherSize) {
-  bus_.Publish(rig_.channels.camera_image,
-               ToMessage(cv::Mat(480, 752, CV_8UC1, cv::Scalar(110)), 1, 0));
-  try {
-    test::HandleAll(&bus_);
-    FAIL() << "an image of another size is no ordinary miss";
-  } catch (const std::exception& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("752 x 480"), HasSubstr("640 x 400")));
-  }
-  EXPECT_THAT(found(), IsEmpty());
+TEST_F(CameraBoardDetectorNodeTest, AnswersAnImageOfAnotherSizeWithBoth) {
+  Send(ToMessage(cv::Mat(480, 752, CV_8UC1, cv::Scalar(110)), 1, 0));
+  ASSERT_THAT(found(), SizeIs(1));
+  EXPECT_EQ(found()[0].miss, "wrong image size");
+  EXPECT_EQ(found()[0].detail, "752 x 480 px, the camera's are 640 x 400");
+}
+
+TEST_F(CameraBoardDetectorNodeTest, DoesNotDecodeWhatCallsItselfHuge) {
+  std::vector<std::uint8_t> jpeg;
+  cv::imencode(".jpg", ImageOfBoard(rig_), jpeg);
+  image_t huge = EncodedToMessage(jpeg, 1, 0);
+  huge.width = huge.height = 65535;  // 13 GB of pixels
+  Send(huge);
+  // The message says the right size, the JPEG's own header another: after FF C0.
+  image_t false_header = EncodedToMessage(jpeg, 2, 1);
+  const std::vector<std::uint8_t> sof{0xFF, 0xC0};
+  const auto at =
+      std::search(false_header.data.begin(), false_header.data.end(), sof.begin(), sof.end());
+  ASSERT_NE(at, false_header.data.end());
+  std::fill(at + 5, at + 9, std::uint8_t{0xFF});  // height, width
+  Send(false_header);
+  image_t empty = EncodedToMessage(jpeg, 3, 2);
+  empty.data.clear();
+  empty.size = 0;
+  Send(empty);
+  ASSERT_THAT(found(), SizeIs(3));
+  EXPECT_EQ(found()[0].miss, "wrong image size");
+  EXPECT_EQ(found()[1].miss, "unreadable image");
+  EXPECT_THAT(found()[1].detail, HasSubstr("65535 x 65535"));
+  EXPECT_EQ(found()[2].miss, "unreadable image");
+}
+
+TEST_F(CameraBoardDetectorNodeTest, CarriesAndCountsWarnings) {
+  cv::Mat blurred;
+  cv::GaussianBlur(ImageOfBoard(rig_), blurred, {}, 2.5);
+  Send(ToMessage(blurred, 1, 0));
+  ASSERT_THAT(found(), SizeIs(1));
+  EXPECT_EQ(found()[0].miss, "");
+  ASSERT_THAT(found()[0].warnings, SizeIs(1));
+  EXPECT_EQ(found()[0].warnings[0].reason, "blurred");
+  EXPECT_THAT(found()[0].warnings[0].detail, HasSubstr("edge width "));
+  EXPECT_EQ(node_.counters(), (test::Counters{{"boards", 1}, {"boards: blurred", 1}}));
 }
 
 }  // namespace

@@ -60,6 +60,7 @@ CameraBoard Camera(Numbers* numbers) {
   board.pose = Pose(numbers);
   board.reprojection_rms_px = numbers->Next();
   for (int i = 0; i < 6; ++i) board.corners_px.push_back(numbers->Vector().head<2>());
+  board.warnings = {{"blurred", "edge width 4.1 px, at most 3"}, {"cut off", "12 %"}};
   return board;
 }
 
@@ -101,6 +102,11 @@ void ExpectSame(const CameraBoard& a, const CameraBoard& b) {
   ExpectSame(a.pose, b.pose);
   EXPECT_EQ(a.reprojection_rms_px, b.reprojection_rms_px);
   EXPECT_EQ(a.corners_px, b.corners_px);
+  ASSERT_EQ(a.warnings.size(), b.warnings.size());
+  for (std::size_t i = 0; i < a.warnings.size(); ++i) {
+    EXPECT_EQ(a.warnings[i].reason, b.warnings[i].reason);
+    EXPECT_EQ(a.warnings[i].detail, b.warnings[i].detail);
+  }
 }
 
 void ExpectSame(const BoardSample& a, const BoardSample& b) {

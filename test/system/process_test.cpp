@@ -42,7 +42,8 @@ const std::vector<std::string> kTools = {"calibrate",
                                          "evaluate",
                                          "export_extrinsic",
                                          "import_acfr",
-                                         "publish_extrinsic"};
+                                         "publish_extrinsic",
+                                         "report"};
 
 // A test that waits for ever is ended by ctest.
 constexpr std::chrono::milliseconds kPatience(100);

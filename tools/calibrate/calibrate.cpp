@@ -5,12 +5,15 @@
 #include <stdexcept>
 #include <string>
 
+#include <spdlog/spdlog.h>
 #include <system_error>
 
 #include "calibrate/collect.hpp"
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
+#include "report/write_report.hpp"
+#include "rig/atomic_file.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {
@@ -20,14 +23,19 @@ struct CalibrateArgs {
   std::filesystem::path rig;
   InputPaths input;
   std::filesystem::path out;
+  bool is_json = false;
 };
 
-// Moves the finished files to where they were asked for, the result last.
+// Moves the finished files to where they were asked for, the result last. A report that could not
+// be made must not leave an earlier one beside a new result.
 void Deliver(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::error_code error;
   std::filesystem::create_directories(to, error);
-  for (const char* name : {kSamplesLogName, kResultName}) {
-    if (!error) std::filesystem::rename(from / name, to / name, error);
+  if (!std::filesystem::exists(from / kReportName))
+    std::filesystem::remove(to / kReportName, error);
+  for (const char* name : {kReportName, kSamplesLogName, kResultJsonName, kResultName}) {
+    if (error || !std::filesystem::exists(from / name)) continue;
+    std::filesystem::rename(from / name, to / name, error);
   }
   if (error) throw std::runtime_error(to.string() + ": cannot write: " + error.message());
 }
@@ -44,10 +52,18 @@ void Calibrate(const CalibrateArgs& args) {
     throw std::runtime_error(args.input.Given().string() + ": no calibration: " +
                              run->assessor().problem() + " (" + CountsOf(*run) + ")");
   }
+  const std::string report_problem = WriteReport(rig, *run, scratch.path());
   Deliver(scratch.path(), args.out);
+  if (!report_problem.empty()) spdlog::warn("no {}: {}", kReportName, report_problem);
+  if (args.is_json) {
+    std::cout << ReadWholeFile(args.out / kResultJsonName);
+    return;
+  }
   std::cout << Summary(*run->assessor().result()) << "frames\n  " << CountsOf(*run)
             << "\nwritten\n  " << (args.out / kResultName).string() << "\n  "
-            << (args.out / kSamplesLogName).string() << '\n';
+            << (args.out / kSamplesLogName).string() << "\n  "
+            << (args.out / kResultJsonName).string() << '\n';
+  if (report_problem.empty()) std::cout << "  " << (args.out / kReportName).string() << '\n';
 }
 
 }  // namespace
@@ -63,7 +79,11 @@ int main(int argc, char** argv) {
   input->add_option(
       "--poses", args.input.poses, "Extracted features: poses.csv of cam_lidar_calibration");
   input->require_option(1);
-  app.add_option("--out", args.out, "Folder for extrinsic.yaml and samples.lcm; made if missing")
+  app.add_option(
+         "--out",
+         args.out,
+         "Folder for extrinsic.yaml, result.json, report.html and samples.lcm; made if missing")
       ->required();
+  app.add_flag("--json", args.is_json, "Print result.json instead of a summary");
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Calibrate(args); });
 }

@@ -20,7 +20,14 @@ OfflineRun::OfflineRun(const Rig& rig, const std::filesystem::path& session_fold
       selector_(rig, &bus_),
       estimator_(rig, &bus_),
       refiner_(rig, &bus_),
-      assessor_(rig, &bus_, session_folder) {}
+      assessor_(rig, &bus_, session_folder),
+      averaged_{} {
+  bus_.Subscribe<extrinsic_averaged_t>(channels_.extrinsic_averaged,
+                                       Queue::kState,
+                                       [this](const extrinsic_averaged_t& m) { averaged_ = m; });
+  bus_.Subscribe<event_t>(
+      channels_.calib_event, Queue::kEvery, [this](const event_t& m) { events_.push_back(m); });
+}
 
 void OfflineRun::FeedLog(const std::filesystem::path& log, const OnProgress& on_progress) {
   const std::set<std::string> inputs = {

@@ -15,6 +15,8 @@
 #include "rig/rig.hpp"
 #include "sample_collector/sample_collector_node.hpp"
 #include "voq_selector/voq_selector_node.hpp"
+#include "voqcal/event_t.hpp"
+#include "voqcal/extrinsic_averaged_t.hpp"
 
 namespace voqcal {
 
@@ -41,6 +43,10 @@ class OfflineRun {
 
   const std::vector<BoardSample>& samples() const { return collector_.samples(); }
   const AssessorNode& assessor() const { return assessor_; }
+  /// The newest EXTRINSIC_AVERAGED: the chosen sets and what each gave.
+  const extrinsic_averaged_t& averaged() const { return averaged_; }
+  /// Every CALIB_EVENT.
+  const std::vector<event_t>& events() const { return events_; }
 
   /// "LIDAR_POINTS: 3 lost, 0 unreadable": what the recording lacks, by its sequence numbers; empty
   /// if nothing.
@@ -61,6 +67,8 @@ class OfflineRun {
   ExtrinsicEstimatorNode estimator_;
   ExtrinsicRefinerNode refiner_;
   AssessorNode assessor_;
+  extrinsic_averaged_t averaged_;
+  std::vector<event_t> events_;
 };
 
 /// True if the log is a session's samples.lcm rather than a recording of sensors.

@@ -16,6 +16,8 @@ install(DIRECTORY tools/common/ DESTINATION tools/common FILES_MATCHING PATTERN 
 # Node.js fetches its libraries there: npm ci.
 install(DIRECTORY tools/node DESTINATION tools USE_SOURCE_PERMISSIONS
   PATTERN node_modules EXCLUDE PATTERN test EXCLUDE)
+install(DIRECTORY tools/report DESTINATION tools USE_SOURCE_PERMISSIONS
+  FILES_MATCHING PATTERN *.py PATTERN *.css PATTERN *.j2)
 install(DIRECTORY config/rigs DESTINATION config)
 install(DIRECTORY lcmtypes/ DESTINATION lcmtypes FILES_MATCHING PATTERN *.lcm)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/lcmtypes/cpp/voqcal DESTINATION include)

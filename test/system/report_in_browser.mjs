@@ -1,0 +1,96 @@
+// report_in_browser.mjs REPORT [FOLDER]: opens a report as people do, in a browser at the sizes of a desk and a
+// phone, and ends with 1 and a line for each thing that is wrong. With FOLDER it leaves screenshots there.
+// 77: no Chromium here.
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const require = createRequire(new URL("../../tools/node/package.json", import.meta.url));
+const { chromium } = require("playwright-core");
+
+const SIZES = { desktop: { width: 1280, height: 900 }, phone: { width: 390, height: 844 } };
+const SECTIONS = ["transform", "errors", "sets", "lidar", "scene", "diagnosis", "poses", "rejected", "made-from"];
+const MAX_PICTURE_HEIGHT = 12_000;
+
+function chromiumPath() {
+  try {
+    return execFileSync("sh", ["-c", "command -v chromium"]).toString().trim();
+  } catch {
+    process.stdout.write("skipped: no chromium (tools/setup installs it)\n");
+    process.exit(77);
+  }
+}
+
+/** Runs in the page: what is wrong with it. */
+function inspect(sections) {
+  const problems = [];
+  const demand = (is_met, problem) => {
+    if (!is_met) problems.push(problem);
+  };
+  const root = document.documentElement;
+  demand(root.scrollWidth <= root.clientWidth, `the page is ${root.scrollWidth} px wide`);
+  for (const id of sections) {
+    const section = document.getElementById(id);
+    demand(section && section.textContent.trim().length > 40, `section ${id} is missing or empty`);
+  }
+  for (const figure of document.querySelectorAll("figure")) {
+    demand(figure.querySelector("figcaption")?.textContent.length > 5, "a figure has no caption");
+  }
+  for (const chart of document.querySelectorAll("svg")) {
+    const name = chart.getAttribute("aria-label");
+    demand(name, "a chart has no name");
+    const numLabels = chart.querySelectorAll(".label").length;
+    demand(numLabels === 2 || chart.querySelector(".cell"), `chart ${name}: ${numLabels} axes are named`);
+    demand(!/NaN|Infinity|undefined/.test(chart.outerHTML), `chart ${name} has no numbers`);
+  }
+  for (const picture of document.images) {
+    demand(picture.alt && picture.naturalWidth > 0, `a picture is broken or unnamed: ${picture.alt}`);
+  }
+  demand(!/NaN|None|undefined|\{\{/.test(document.body.innerText), "the text has NaN, None or undefined");
+  return problems;
+}
+
+const [report, folder] = process.argv.slice(2);
+const url = pathToFileURL(resolve(report)).href;
+const executablePath = chromiumPath();
+const profile = mkdtempSync(join(tmpdir(), "voqcal-chromium-"));
+const context = await chromium.launchPersistentContext(profile, {
+  executablePath,
+  headless: true,
+  args: [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+  ],
+});
+const problems = [];
+for (const [name, size] of Object.entries(SIZES)) {
+  const page = await context.newPage();
+  await page.setViewportSize(size);
+  page.on("console", (message) => problems.push(`${name}: console ${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => problems.push(`${name}: ${error.message}`));
+  page.on("request", (request) => {
+    const asked = request.url();
+    if (asked !== url && !asked.startsWith("data:")) problems.push(`${name}: asks for ${asked}`);
+  });
+  await page.goto(url);
+  for (const problem of await page.evaluate(inspect, SECTIONS)) problems.push(`${name}: ${problem}`);
+  const loadMs = await page.evaluate(() => performance.getEntriesByType("navigation")[0].loadEventEnd);
+  process.stdout.write(`${name}: shown after ${Math.round(loadMs)} ms\n`);
+  if (folder) {
+    const fullHeight = await page.evaluate(() => document.documentElement.scrollHeight);
+    const clip = { x: 0, y: 0, width: size.width, height: Math.min(fullHeight, MAX_PICTURE_HEIGHT) };
+    await page.screenshot({ path: join(folder, `${name}.png`), fullPage: true, clip });
+  }
+  await page.close();
+}
+await context.close();
+rmSync(profile, { recursive: true, force: true });
+for (const problem of problems) process.stdout.write(`${problem}\n`);
+process.exitCode = problems.length === 0 ? 0 : 1;

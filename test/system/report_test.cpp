@@ -1,0 +1,128 @@
+// report.html and result.json of a simulated run and of the real session, as a browser shows them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "rig/atomic_file.hpp"
+#include "rig/rig.hpp"
+#include "support/real_data.hpp"
+#include "support/simulated_log.hpp"
+#include "support/temporary_folder.hpp"
+#include "system/system_test.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr char kInBrowser[] = VOQCAL_SOURCE_DIR "/test/system/report_in_browser.mjs";
+constexpr char kWithNode[] = VOQCAL_SOURCE_DIR "/test/system/with_node.sh";
+constexpr int kSkipped = 77;
+
+class Report : public ::testing::Test {
+ protected:
+  std::string Path(const std::string& name) const { return folder_.path() / name; }
+
+  void Calibrate(const std::string& rig, const std::string& log, const std::string& out) const {
+    const test::Outcome outcome =
+        test::Run({test::Program("calibrate"), "--rig", rig, "--log", log, "--out", Path(out)});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("report")));
+  }
+
+  /// No console error, no request, no broken picture, nothing wider than the screen.
+  void ExpectGoodInBrowser(const std::string& out) const {
+    const test::Outcome outcome =
+        test::Run({kWithNode, "node", kInBrowser, Path(out + "/report.html")});
+    if (outcome.status == kSkipped) GTEST_SKIP() << outcome.out;
+    EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+class SimulatedReport : public Report {
+ protected:
+  void SetUp() override {
+    test::WriteStopsLog(LoadRig(rig_), Path("raw.lcm"));
+    Calibrate(rig_, Path("raw.lcm"), "out");
+  }
+
+  std::string rig_ = folder_.Write(
+      "rig.yaml",
+      test::Replaced(test::ShortRigText(), "num_still_frames: 3", "num_still_frames: 1"));
+};
+
+TEST_F(SimulatedReport, IsGoodInABrowser) { ExpectGoodInBrowser("out"); }
+
+TEST_F(SimulatedReport, IsTheSameEachTime) {
+  Calibrate(rig_, Path("raw.lcm"), "again");
+  for (const char* name : {"/report.html", "/result.json"}) {
+    EXPECT_EQ(ReadWholeFile(Path("out") + name), ReadWholeFile(Path("again") + name)) << name;
+  }
+}
+
+TEST_F(SimulatedReport, HasAPictureOfEachSample) {
+  const std::string page = ReadWholeFile(Path("out/report.html"));
+  const auto json = nlohmann::json::parse(ReadWholeFile(Path("out/result.json")));
+  ASSERT_FALSE(json["samples"].empty());
+  for (const auto& sample : json["samples"]) {
+    EXPECT_THAT(page, HasSubstr("Pose " + sample["id"].dump() + ": the image with the lidar"));
+  }
+}
+
+TEST_F(SimulatedReport, JsonSaysWhatTheResultSays) {
+  const auto json = nlohmann::json::parse(ReadWholeFile(Path("out/result.json")));
+  const std::string yaml = ReadWholeFile(Path("out/extrinsic.yaml"));
+  for (const char* key : {"T_camera_lidar", "covariance", "averaged", "scores", "made_from"}) {
+    EXPECT_TRUE(json["result"].contains(key)) << key;
+  }
+  EXPECT_THAT(yaml, HasSubstr(json["result"]["made_from"]["log_sha256"].get<std::string>()));
+  EXPECT_EQ(json["sets"]["chosen"].size(),
+            json["result"]["averaged"]["num_sets"].get<std::size_t>());
+  const auto& all_voq = json["sets"]["all_voq"];
+  std::size_t num_sets = 0;
+  for (const auto& count : all_voq["counts"]) num_sets += count.get<std::size_t>();
+  const std::size_t n = json["result"]["samples"]["used"].size();
+  EXPECT_EQ(num_sets, n * (n - 1) * (n - 2) / 6);
+}
+
+TEST_F(SimulatedReport, JsonCanBePrinted) {
+  const test::Outcome outcome = test::Run({test::Program("calibrate"),
+                                           "--rig",
+                                           rig_,
+                                           "--log",
+                                           Path("raw.lcm"),
+                                           "--out",
+                                           Path("printed"),
+                                           "--json"});
+  EXPECT_EQ(outcome.out, ReadWholeFile(Path("printed/result.json")));
+}
+
+TEST_F(SimulatedReport, OfALiveSessionIsThatOfCalibrate) {
+  std::filesystem::create_directory(Path("session"));
+  std::filesystem::copy_file(Path("out/samples.lcm"), Path("session/samples.lcm"));
+  const test::Outcome outcome =
+      test::Run({test::Program("report"), Path("session"), "--rig", rig_});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  Calibrate(rig_, Path("out/samples.lcm"), "from_samples");
+  EXPECT_EQ(ReadWholeFile(Path("session/report.html")),
+            ReadWholeFile(Path("from_samples/report.html")));
+}
+
+TEST_F(Report, OfTheRealSessionIsGoodInABrowser) {
+  const auto data = test::RealDataFolder();
+  if (!data) GTEST_SKIP() << "no real data on this machine";
+  const std::string rig = VOQCAL_SOURCE_DIR "/config/rigs/acfr_vlp16.yaml";
+  const std::string session = *data / "acfr-vlp16";
+  const test::Outcome import =
+      test::Run({test::Program("import_acfr"), session, "--rig", rig, "--out", Path("raw.lcm")});
+  ASSERT_EQ(import.status, 0) << import.err;
+  Calibrate(rig, Path("raw.lcm"), "out");
+  ExpectGoodInBrowser("out");
+}
+
+}  // namespace
+}  // namespace voqcal

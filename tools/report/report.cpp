@@ -1,0 +1,55 @@
+// report: the report of a session that was calibrated live.
+
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+
+#include "calibrate/collect.hpp"
+#include "common/scratch_folder.hpp"
+#include "common/tool_main.hpp"
+#include "messaging/session_scenes.hpp"
+#include "report/write_report.hpp"
+#include "rig/rig.hpp"
+
+namespace voqcal {
+namespace {
+
+struct ReportArgs {
+  std::filesystem::path session;
+  std::filesystem::path rig;
+};
+
+// A result depends on samples and rig only: what the live modules found is found again, on a copy.
+void Report(const ReportArgs& args) {
+  const Rig rig = LoadRig(args.rig);
+  const ScratchFolder scratch(args.session / "report");
+  InputPaths input;
+  input.log = args.session / kSamplesLogName;
+  const auto run = CollectSamples(rig, input, scratch.path());
+  run->Finish(/*is_collecting_only=*/false);
+  if (!run->assessor().result()) {
+    throw std::runtime_error(input.log->string() +
+                             ": no calibration: " + run->assessor().problem());
+  }
+  const std::string problem = WriteReport(rig, *run, scratch.path());
+  if (!problem.empty()) throw std::runtime_error(problem);
+  std::cout << "written\n";
+  for (const char* name : {kResultJsonName, kReportName}) {
+    std::filesystem::rename(scratch.path() / name, args.session / name);
+    std::cout << "  " << (args.session / name).string() << '\n';
+  }
+}
+
+}  // namespace
+}  // namespace voqcal
+
+int main(int argc, char** argv) {
+  CLI::App app("Writes report.html and result.json of a session's samples, as calibrate does.",
+               "report");
+  voqcal::ReportArgs args;
+  app.add_option("session", args.session, "The session's folder, with samples.lcm")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--rig", args.rig, "The rig file (YAML)")->required();
+  return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Report(args); });
+}

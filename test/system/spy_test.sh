@@ -17,7 +17,9 @@ until [ -s "$folder/display" ]; do sleep 0.1; done
 DISPLAY=:$(cat "$folder/display")
 export DISPLAY
 
-rig=$root/config/rigs/simulated_vlp16.yaml
+# The board rests long: on a slow machine Java is not ready within the minute that the rig takes as it is.
+rig=$folder/rig.yaml
+sed 's/hold_s: 1.0/hold_s: 20.0/' "$root/config/rigs/simulated_vlp16.yaml" >"$rig"
 "$root/tools/up" "$rig" --session "$folder/session" \
   --only lidar_driver,camera_driver,lidar_board_detector,camera_board_detector
 VOQCAL_SPY="$root/test/system/SpyTest.java $screenshots" "$root/tools/spy" "$rig"

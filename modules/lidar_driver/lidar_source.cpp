@@ -52,6 +52,8 @@ std::unique_ptr<LidarSource> MakeLidarSource(const Rig& rig) {
       return std::make_unique<FolderLidarSource>(rig.lidar_driver);
     case DriverSource::kSimulator:
       return std::make_unique<SimulatedLidarSource>(rig);
+    case DriverSource::kVideo:  // the rig's reader lets only a camera have it
+      break;
   }
   throw std::logic_error("MakeLidarSource: unknown source");
 }

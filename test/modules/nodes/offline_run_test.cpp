@@ -1,6 +1,8 @@
 #include "calibrate/offline_run.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +17,10 @@ namespace voqcal {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::Gt;
 using ::testing::HasSubstr;
+using ::testing::Pair;
 using ::testing::SizeIs;
 
 void NoProgress(double /*share*/, std::size_t /*num_samples*/) {}
@@ -95,13 +100,20 @@ TEST_F(OfflineRunTest, NamesTheChannelThatALogHasNot) {
                     HasSubstr("it has POSE")));
 }
 
-TEST_F(OfflineRunTest, NamesTheEventOfAnImageOfAnotherSize) {
+TEST_F(OfflineRunTest, CountsImagesOfAnotherSize) {
   Rig other = test::TinySimulatedRig();
   test::WriteStopsLog(other, log_);
   other.camera.width_px += 2;
   OfflineRun run(other, session("s"));
-  EXPECT_THAT(test::ErrorOf([&] { run.FeedLog(log_, NoProgress); }),
-              AllOf(HasSubstr(log_.string() + ": event"), HasSubstr("CAMERA_IMAGE")));
+  run.FeedLog(log_, NoProgress);
+  run.Finish(/*is_collecting_only=*/false);
+  EXPECT_THAT(run.samples(), SizeIs(0));
+  const std::vector<const Module*> modules = run.modules();
+  const auto detector = std::find_if(modules.begin(), modules.end(), [](const Module* module) {
+    return module->Name() == "camera_board_detector";
+  });
+  ASSERT_NE(detector, modules.end());
+  EXPECT_THAT((*detector)->counters(), ElementsAre(Pair("wrong image size", Gt(0))));
 }
 
 TEST_F(OfflineRunTest, TellsASessionsLogFromARecording) {

@@ -87,7 +87,8 @@ BoardPose CorrectedPose(const LidarBoard& lidar, const LidarBias& bias) {
   const PlaneFit plane = PlaneOf(bias.Corrected(lidar.points_lidar_m));
   BoardPose pose = lidar.pose;
   pose.normal = plane.normal;
-  pose.centre_m = AlongItsRay(lidar.pose.centre_m, plane);
+  const Eigen::Vector3d lift_m = bias.outline_lift.value_m * Eigen::Vector3d::UnitZ();
+  pose.centre_m = AlongItsRay(lidar.pose.centre_m - lift_m, plane);
   // The rays fix the outline's direction, the board its size.
   const Eigen::Isometry3d T_lidar_board = TransformFromPose(lidar.pose);
   const double step_m = 0.1;  // any: the direction of a line does not depend on its length

@@ -38,12 +38,14 @@ struct ShadeScale {
 /// lose. No scale without intensities.
 ShadeScale MakeShadeScale(const std::vector<const BoardSample*>& samples);
 
-/// Range errors of a lidar: measured = true + common + dark_step * shade + ring offset.
+/// Systematic errors of a lidar. Ranges: measured = true + common + dark_step * shade + ring
+/// offset.
 struct LidarBias {
   BiasEstimate common;
   BiasEstimate dark_step;           ///< How much longer dark surfaces read than bright ones.
   std::vector<BiasEstimate> rings;  ///< Offset of each scan line; empty if the cloud has no rings.
   ShadeScale shades;
+  BiasEstimate outline_lift;  ///< How much higher (along z) outlines look than they are.
 
   double OffsetM(const LidarPoint& point) const;
   /// The cloud without these errors: each point moves along its ray.

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "core/board/board_sample.hpp"
+#include "core/camera/camera_model.hpp"
 #include "core/estimation/lidar_bias.hpp"
 #include "core/estimation/refine.hpp"
 #include "core/geometry/rigid.hpp"
@@ -16,13 +17,21 @@ namespace voqcal {
 /// What is expected before the data speak. Model errors add to the detectors' covariances; how far
 /// to believe the sum is estimated from the data.
 struct LikelihoodOptions {
-  double common_prior_m = 0.03;      ///< 1 sigma of the offset common to all ranges.
-  double dark_step_prior_m = 0.03;   ///< 1 sigma of dark against bright surfaces.
-  double ring_prior_m = 0.015;       ///< 1 sigma of each scan line's own offset.
+  double common_prior_m = 0.03;     ///< 1 sigma of the offset common to all ranges.
+  double dark_step_prior_m = 0.03;  ///< 1 sigma of dark against bright surfaces.
+  double ring_prior_m = 0.015;      ///< 1 sigma of each scan line's own offset.
+  /// 1 sigma of an error of the outlines' height (along the lidar's z) that all sweeps share: scan
+  /// lines cut the outline coarsely, and always at the same elevations.
+  double outline_lift_prior_m = 0.001;
   double outline_error_m = 0.001;    ///< 1 sigma of the outline fit's centre, beyond its noise.
   double outline_error_rad = 0.003;  ///< 1 sigma of its turn in the plane.
   double camera_error_m = 0.003;     ///< 1 sigma of the chessboard's depth, beyond its noise...
   double camera_error_rad = 0.005;   ///< ...and of its tilt: the board bends, the lens model errs.
+  // Plausible errors of what was measured beforehand; a covariance smaller than their effect is
+  // widened to it.
+  double focal_length_error = 0.0003;     ///< 1 sigma, relative.
+  double principal_point_error_px = 0.2;  ///< 1 sigma in each direction.
+  double board_size_error = 0.0005;       ///< 1 sigma of a chessboard square, relative.
   int max_iterations = 50;
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
@@ -36,13 +45,24 @@ struct LikelihoodNoise {
   double camera_factor = 1.0;   ///< On the chessboard's expected 1 sigma, lidar planes comparing.
 };
 
+/// How far the extrinsic may be off, 1 sigma of [rotation_rad; translation_m] perturbed on the left
+/// (camera side), by three ways of telling. Its covariance is the likelihood's, widened for each
+/// parameter to the largest.
+struct LikelihoodUncertainty {
+  /// The inverse information; faults that the data cannot tell count with their priors.
+  Vector6d by_likelihood = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /// By the poses' own variety (UncertaintyOf).
+  Vector6d by_resampling = by_likelihood;
+  /// Estimated again with lens and board in error.
+  Vector6d by_model_errors = by_likelihood;
+  Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+};
+
 /// An extrinsic with the lidar's faults that came with it.
 struct LikelihoodExtrinsic {
   /// Takes lidar coordinates to camera coordinates: p_camera = T_camera_lidar * p_lidar.
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  /// Of [rotation_rad; translation_m], perturbed on the left (camera side). Faults that the data
-  /// cannot tell count with their priors.
-  Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  LikelihoodUncertainty uncertainty;
   LidarBias bias;
   LikelihoodNoise noise;
   double range_rms_m = std::numeric_limits<double>::quiet_NaN();   ///< Of all returns.
@@ -60,14 +80,19 @@ struct LikelihoodExtrinsic {
 /// axes, which errors of range leave alone. A fault that the data do not narrow to half its prior
 /// stays zero, "unobservable".
 ///
-/// Sweeps of one lidar see the outline between the same scan lines, so its errors are not quite
-/// independent: over 8 simulated sessions the error was 1.3 times what the covariance says.
-///
 /// kDegenerate: fewer than three samples, or parameters that the poses leave open. kNotConverged:
 /// out of iterations, or a board that is not before both sensors; the transform is then the start.
 /// @throws std::invalid_argument if `options` has Problems().
 LikelihoodExtrinsic RefineByLikelihood(const std::vector<const BoardSample*>& samples,
+                                       const CameraModel& camera,
                                        const Eigen::Isometry3d& T_camera_lidar_start,
                                        const LikelihoodOptions& options);
+
+/// The same for nearly the samples that `nearby` was refined over (leave-one-out), in a few steps
+/// from there: noise levels, the scale of shades, which faults are observable and every standard
+/// error stay its.
+LikelihoodExtrinsic RefineNearby(const std::vector<const BoardSample*>& samples,
+                                 const LikelihoodExtrinsic& nearby,
+                                 const LikelihoodOptions& options);
 
 }  // namespace voqcal

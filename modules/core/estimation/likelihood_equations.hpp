@@ -11,50 +11,71 @@
 
 namespace voqcal {
 
-/// The shared unknowns begin with the extrinsic's perturbation; the faults follow.
+/// The shared unknowns: [extrinsic's perturbation (6); faults]. The faults in their order:
 constexpr Eigen::Index kExtrinsicSize = 6;
+constexpr Eigen::Index kCommon = 0;
+constexpr Eigen::Index kDarkStep = 1;
+constexpr Eigen::Index kLift = 2;
+constexpr Eigen::Index kFirstRing = 3;
 
 /// Where the search stands.
 struct LikelihoodState {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  Eigen::VectorXd faults_m;  ///< [common; dark step; rings].
+  Eigen::VectorXd faults_m;
   std::vector<Eigen::Isometry3d> T_camera_board;
 
   double OffsetM(const BoardReturn& seen) const {
-    return faults_m[0] + faults_m[1] * seen.shade +
-           faults_m[2 + static_cast<Eigen::Index>(seen.ring)];
+    return faults_m[kCommon] + faults_m[kDarkStep] * seen.shade +
+           faults_m[kFirstRing + static_cast<Eigen::Index>(seen.ring)];
   }
+  double LiftM() const { return faults_m[kLift]; }
   BoardAndLidar At(std::size_t pose) const { return {T_camera_lidar, T_camera_board[pose]}; }
 };
 
-/// Gauss-Newton's equations of one pose. Unknowns: [extrinsic 6; board 6; common; dark step;
-/// rings].
+constexpr Eigen::Index kBoardIndex = 6;  ///< Of a pose's unknowns: [extrinsic 6; board 6; faults].
+
+/// Gauss-Newton's equations of one pose.
 struct PoseEquations {
   Eigen::MatrixXd information;
   Eigen::VectorXd pull;  ///< Minus the gradient.
 };
 
-/// What one pose says at `state`; returns and outline with Cauchy weights, which give way to gross
+/// What the returns of one pose say at `state`, with Cauchy weights, which give way to gross
 /// errors.
+PoseEquations EquationsOfReturns(const LikelihoodPose& pose,
+                                 const LikelihoodState& state,
+                                 std::size_t index,
+                                 double range_sigma_m);
+
+/// All that one pose says: returns, outline (with Cauchy weights too) and chessboard.
 PoseEquations EquationsOf(const LikelihoodPose& pose,
                           const LikelihoodState& state,
                           std::size_t index,
                           const LikelihoodOptions& options,
                           const LikelihoodNoise& noise);
 
-/// All poses with the board poses eliminated (Schur complement), without the faults' priors.
+/// One pose with its board's unknowns eliminated (Schur complement).
+struct PoseShare {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd pull;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> to_board;  ///< Information, shared unknowns by board's.
+  Matrix6d board_covariance;                          ///< With the shared unknowns known.
+  Vector6d board_pull;
+
+  /// The step of the board's pose that follows from `shared_step`.
+  Vector6d BoardStep(const Eigen::VectorXd& shared_step) const;
+};
+
+/// The sum over all poses, without the faults' priors.
 struct SharedEquations {
   Eigen::MatrixXd information;
   Eigen::VectorXd pull;
-  std::vector<PoseEquations> poses;
+  std::vector<PoseShare> poses;
 };
 SharedEquations Eliminate(const std::vector<LikelihoodPose>& poses,
                           const LikelihoodState& state,
                           const LikelihoodOptions& options,
                           const LikelihoodNoise& noise);
-
-/// The step of one board's pose that follows from `shared_step`.
-Vector6d BoardStep(const PoseEquations& equations, const Eigen::VectorXd& shared_step);
 
 /// Expected covariances, model error included and scaled by the estimated noise.
 Matrix6d CameraCovariance(const LikelihoodPose& pose,
@@ -63,11 +84,5 @@ Matrix6d CameraCovariance(const LikelihoodPose& pose,
 Eigen::Matrix3d OutlineCovariance(const LikelihoodPose& pose,
                                   const LikelihoodOptions& options,
                                   const LikelihoodNoise& noise);
-
-/// Noise levels such that the residuals at `state` are as large as they claim, by medians.
-LikelihoodNoise EstimateNoise(const std::vector<LikelihoodPose>& poses,
-                              const LikelihoodState& state,
-                              const LikelihoodOptions& options,
-                              const LikelihoodNoise& current);
 
 }  // namespace voqcal

@@ -49,6 +49,25 @@ double RangeToBoardM(const BoardAndLidar& at,
   return range_m;
 }
 
+Eigen::Vector3d PlaneInLidar(const BoardAndLidar& at, Matrix312d* J_plane) {
+  const Eigen::Matrix3d R_lidar_camera = at.T_camera_lidar.linear().transpose();
+  const Eigen::Vector3d n = at.T_camera_board.linear().col(2);
+  const Eigen::Vector3d to_centre_m =
+      at.T_camera_board.translation() - at.T_camera_lidar.translation();
+  const double distance_m = n.dot(to_centre_m);
+  const Eigen::Vector3d plane = R_lidar_camera * n / distance_m;
+  if (J_plane != nullptr) {
+    // R' n with R perturbed by w changes by R' (n x w); n itself perturbed, by R' (w x n).
+    const Eigen::Matrix3d J_normal = R_lidar_camera * Skew(n) / distance_m;
+    const Eigen::Vector3d shrink = -plane / distance_m;  // by the plane's distance
+    J_plane->block<3, 3>(0, 0) = J_normal;
+    J_plane->block<3, 3>(0, 3) = -shrink * n.transpose();
+    J_plane->block<3, 3>(0, 6) = -J_normal + shrink * n.cross(to_centre_m).transpose();
+    J_plane->block<3, 3>(0, 9) = shrink * n.transpose();
+  }
+  return plane;
+}
+
 OutlineRays OutlineRaysOf(const BoardPose& pose_lidar) {
   OutlineRays outline;
   outline.T_lidar_board = TransformFromPose(pose_lidar);
@@ -61,6 +80,7 @@ OutlineRays OutlineRaysOf(const BoardPose& pose_lidar) {
 
 Eigen::Vector3d OutlineResidual(const BoardAndLidar& at,
                                 const OutlineRays& outline,
+                                double lift_m,
                                 Matrix312d* J_residual) {
   const Eigen::Matrix3d R_lidar_camera = at.T_camera_lidar.linear().transpose();
   const Eigen::Vector3d to_centre_m =
@@ -87,7 +107,12 @@ Eigen::Vector3d OutlineResidual(const BoardAndLidar& at,
   }
   Eigen::Vector3d residual;
   residual << across_of_centre * to_centre_m, turn_of_x.dot(x) + turn_of_y.dot(y);
-  return residual;
+  return residual + lift_m * OutlineByLift(outline);
+}
+
+Eigen::Vector3d OutlineByLift(const OutlineRays& outline) {
+  const auto across = Across(outline.T_lidar_board.translation().normalized());
+  return {across(2, 0), across(2, 1), 0.0};
 }
 
 LikelihoodPose MakeLikelihoodPose(const BoardSample& sample,
@@ -96,6 +121,7 @@ LikelihoodPose MakeLikelihoodPose(const BoardSample& sample,
   LikelihoodPose pose;
   pose.T_camera_board = TransformFromPose(sample.camera.pose);
   pose.covariance = sample.camera.pose.covariance;
+  pose.corners_camera_m = sample.camera.pose.corners_m;
   pose.outline = OutlineRaysOf(LidarPoseInCameraOrder(sample, T_camera_lidar));
   const PointCloud& cloud = sample.lidar.points_lidar_m;
   for (const LidarPoint& point : cloud.points) {

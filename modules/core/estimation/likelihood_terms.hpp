@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -30,6 +31,12 @@ double RangeToBoardM(const BoardAndLidar& at,
                      const Eigen::Vector3d& direction_lidar,
                      Vector12d* J_range);
 
+/// The board's plane in the lidar frame, as the points p with a . p = 1: all that returns see of
+/// the board and of the extrinsic, for a ray u meets it at the range 1 / (a . u).
+///     a = R' n / (n . (c - t))
+/// with the names of RangeToBoardM. `J` may be null.
+Eigen::Vector3d PlaneInLidar(const BoardAndLidar& at, Matrix312d* J_plane);
+
 /// What the outline in the lidar's sweep fixes whatever its ranges: the rays to the board's centre
 /// and along its axes.
 struct OutlineRays {
@@ -42,13 +49,17 @@ struct OutlineRays {
 OutlineRays OutlineRaysOf(const BoardPose& pose_lidar);
 
 /// How far the board is from where the outline's rays say:
-///     across = B' c,  turn = (m_x . x / m_x . y0 - m_y . y / m_y . x0) / 2
+///     across = B' (c + lift z),  turn = (m_x . x / m_x . y0 - m_y . y / m_y . x0) / 2
 /// c, x, y: centre and axes of the board in the lidar frame by `at`; c0, x0, y0: the detector's; B:
 /// two directions across c0; m_x = c0 x x0 and m_y = c0 x y0, normals of the planes in which the
-/// rays hold the axes. `J` may be null.
+/// rays hold the axes; z: the lidar's own, across its scan lines. `J` may be null.
 Eigen::Vector3d OutlineResidual(const BoardAndLidar& at,
                                 const OutlineRays& outline,
+                                double lift_m,
                                 Matrix312d* J_residual);
+
+/// Its derivative by the lift.
+Eigen::Vector3d OutlineByLift(const OutlineRays& outline);
 
 /// One return on the board.
 struct BoardReturn {
@@ -62,6 +73,7 @@ struct BoardReturn {
 struct LikelihoodPose {
   Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();  ///< By the chessboard.
   Matrix6d covariance = Matrix6d::Zero();                            ///< Of it, left side.
+  std::array<Eigen::Vector3d, 4> corners_camera_m;  ///< Of the outline, by the chessboard.
   OutlineRays outline;
   std::vector<BoardReturn> returns;
 };

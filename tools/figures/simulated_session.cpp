@@ -1,0 +1,41 @@
+#include "figures/simulated_session.hpp"
+
+#include <cmath>
+
+#include "core/board/sample_picker.hpp"
+#include "core/estimation/consistency.hpp"
+
+namespace voqcal {
+
+SimulationOptions FaultySimulation(const Rig& rig, int num_poses, std::uint32_t seed) {
+  SimulationOptions simulation = rig.simulation;
+  simulation.seed = seed;
+  simulation.num_poses = num_poses;
+  simulation.common_bias_m = 0.02;
+  simulation.dark_bias_m = 0.0075;  // half of the step
+  simulation.ring_bias_m = 0.008;
+  return simulation;
+}
+
+std::vector<BoardSample> SimulateSession(const Rig& rig, const SimulationOptions& simulation) {
+  const Simulation world(simulation, rig.board, rig.camera);
+  std::vector<BoardSample> samples;
+  for (int stop = 0; stop < simulation.num_poses; ++stop) {
+    const double time_s =
+        stop * (simulation.hold_s + simulation.move_s) + 0.5 * simulation.hold_s;
+    const auto lidar = DetectLidarBoard(world.Sweep(time_s), rig.board, rig.lidar_board_detector);
+    const auto camera =
+        DetectCameraBoard(world.Image(time_s), rig.camera, rig.board, rig.camera_board_detector);
+    if (!lidar || !camera) continue;
+    samples.push_back(AverageSightings(
+        {lidar->front()}, {*camera}, kSyntheticEpochUtime + std::llround(1e6 * time_s), rig.board));
+    samples.back().id = stop + 1;
+  }
+  std::vector<BoardSample> consistent;
+  for (const int i : FindConsistent(samples, rig.consistency).consistent) {
+    consistent.push_back(samples[static_cast<std::size_t>(i)]);
+  }
+  return consistent;
+}
+
+}  // namespace voqcal

@@ -101,18 +101,21 @@ CalibrationResult AssessorNode::Result() {
   const std::vector<BoardSample> all = FromMessage(*samples_);
   const std::vector<const BoardSample*> samples = SamplesWithout(all, averaged_->inconsistent_ids);
 
+  const BestExtrinsic refined = FromMessage(*refined_);
+
   CalibrationResult result;
-  result.T_camera_lidar = FromMessage(refined_->T_camera_lidar);
-  result.covariance =
-      Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(&refined_->covariance[0][0]);
+  result.T_camera_lidar = refined.T_camera_lidar;
+  result.covariance = refined.covariance;
+  result.method = refined.method;
+  result.trials = refined.trials;
+  result.lidar_bias = refined.Bias();
   result.averaged.T_camera_lidar = FromMessage(averaged_->T_camera_lidar);
   result.averaged.spread = Eigen::Map<const Vector6d>(averaged_->spread);
   result.averaged.num_sets = averaged_->num_sets;
   for (const set_extrinsic_t& set : averaged_->sets) result.averaged.num_kept += set.is_kept;
 
-  result.held_out = LeaveOneOutScore(
-      samples, rig_.camera, result.averaged.T_camera_lidar, rig_.extrinsic_refiner);
-  result.in_sample = ScoreScene(samples, rig_.camera, result.T_camera_lidar);
+  result.held_out = refined.held_out;
+  result.in_sample = ScoreCorrected(samples, rig_.camera, result.T_camera_lidar, result.lidar_bias);
   result.of_average = ScoreScene(samples, rig_.camera, result.averaged.T_camera_lidar);
 
   result.held_out_by_cell = BinByImageCell(samples, result.held_out, rig_.camera);

@@ -36,18 +36,16 @@ void ExtrinsicRefinerNode::Republish() {
 
 extrinsic_refined_t ExtrinsicRefinerNode::Refine() const {
   extrinsic_refined_t result{};
-  std::string problem = averaged_->problem;
-  if (problem.empty()) {
+  result.problem = averaged_->problem;
+  if (result.problem.empty()) {
     const std::vector<BoardSample> all = FromMessage(*samples_);
     const std::vector<const BoardSample*> samples =
         SamplesWithout(all, averaged_->inconsistent_ids);
-    const RefinedExtrinsic refined = RefineExtrinsic(
-        samples, rig_.camera, FromMessage(averaged_->T_camera_lidar), rig_.extrinsic_refiner);
-    result = ToMessage(refined, IdsOf(samples));
-    if (!refined.IsUsable()) problem = "the refinement is " + ToString(refined.status);
+    const BestExtrinsic best =
+        RefineBest(samples, rig_.camera, FromMessage(*averaged_), rig_.extrinsic_refiner);
+    result = ToMessage(best, IdsOf(samples));
   }
   StampMadeFrom(*samples_, &result);
-  result.problem = problem;
   return result;
 }
 

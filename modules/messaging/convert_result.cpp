@@ -131,26 +131,6 @@ AveragedExtrinsic FromMessage(const extrinsic_averaged_t& message) {
   return average;
 }
 
-extrinsic_refined_t ToMessage(const RefinedExtrinsic& refined,
-                              const std::vector<std::int64_t>& sample_ids) {
-  extrinsic_refined_t message{};
-  message.T_camera_lidar = ToMessage(refined.T_camera_lidar);
-  Eigen::Map<RowMajor6d>(&message.covariance[0][0]) = refined.covariance;
-  message.reprojection_rms_px = refined.reprojection_rms_px;
-  message.sample_ids = sample_ids;
-  message.num_samples = static_cast<std::int32_t>(sample_ids.size());
-  return message;
-}
-
-RefinedExtrinsic FromMessage(const extrinsic_refined_t& message) {
-  RefinedExtrinsic refined;
-  refined.T_camera_lidar = FromMessage(message.T_camera_lidar);
-  refined.covariance = Eigen::Map<const RowMajor6d>(&message.covariance[0][0]);
-  refined.reprojection_rms_px = message.reprojection_rms_px;
-  refined.status = message.problem.empty() ? RefineStatus::kConverged : RefineStatus::kNotConverged;
-  return refined;
-}
-
 spread_t ToMessage(const Spread& spread) {
   spread_t message{};
   message.mean = spread.mean;

@@ -5,13 +5,15 @@
 
 #include <Eigen/Geometry>
 
+#include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/scores.hpp"
 #include "core/estimation/average.hpp"
-#include "core/estimation/refine.hpp"
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/selection/voq.hpp"
 #include "voqcal/extrinsic_averaged_t.hpp"
 #include "voqcal/extrinsic_refined_t.hpp"
+#include "voqcal/lidar_bias_t.hpp"
+#include "voqcal/pose_score_t.hpp"
 #include "voqcal/rigid_transform_t.hpp"
 #include "voqcal/scene_score_t.hpp"
 #include "voqcal/set_extrinsic_t.hpp"
@@ -48,11 +50,19 @@ extrinsic_averaged_t ToMessage(const AveragedExtrinsic& average,
                                const std::vector<SetExtrinsic>& extrinsics);
 AveragedExtrinsic FromMessage(const extrinsic_averaged_t& message);
 
-/// utime, revision and problem are left to the caller.
-extrinsic_refined_t ToMessage(const RefinedExtrinsic& refined,
+/// utime and revision are left to the caller.
+extrinsic_refined_t ToMessage(const BestExtrinsic& best,
                               const std::vector<std::int64_t>& sample_ids);
-/// Its status is kConverged if the message states no problem, else kNotConverged.
-RefinedExtrinsic FromMessage(const extrinsic_refined_t& message);
+/// All that the message carries: of the trials the scores without single poses, and of the
+/// likelihood bias, uncertainty and noise.
+/// @throws std::runtime_error for an unknown method or a broken transform.
+BestExtrinsic FromMessage(const extrinsic_refined_t& message);
+
+lidar_bias_t ToMessage(const LidarBias& bias);
+LidarBias FromMessage(const lidar_bias_t& message);
+
+pose_score_t ToMessage(const PoseScore& score);
+PoseScore FromMessage(const pose_score_t& message);
 
 spread_t ToMessage(const Spread& spread);
 Spread FromMessage(const spread_t& message);

@@ -5,6 +5,7 @@
 
 #include "rig/assessment_yaml.hpp"
 #include "rig/atomic_file.hpp"
+#include "rig/lidar_bias_yaml.hpp"
 #include "rig/number_text.hpp"
 #include "rig/transform_yaml.hpp"
 #include "rig/yaml_reader.hpp"
@@ -63,6 +64,22 @@ std::string Averaged(const AveragedPart& averaged) {
          "\n  num_sets_kept: " + std::to_string(averaged.num_kept) + "\n";
 }
 
+std::string Methods(const CalibrationResult& result) {
+  std::string text =
+      "method: " + ToString(result.method) +
+      "  # the least error_mm, unless the rig file names one\n"
+      "methods:  # on poses held out; error_mm: geometric mean of centre and corner\n";
+  if (result.trials.empty()) text = text.substr(0, text.find('\n') + 1) + "methods: []\n";
+  for (const MethodTrial& trial : result.trials) {
+    text += "  - {method: " + ToString(trial.method) +
+            ", error_mm: " + NumberText(trial.ErrorMm()) +
+            ", centre_mm: " + NumberText(trial.held_out.centre_mm.mean) +
+            ", corner_mm: " + NumberText(trial.held_out.corner_mm.mean) +
+            ", problem: " + Quoted(trial.problem) + "}\n";
+  }
+  return text;
+}
+
 std::string Samples(const CalibrationResult& result) {
   std::string used;
   for (const std::int64_t id : result.used_ids) {
@@ -118,11 +135,12 @@ std::string ToYaml(const CalibrationResult& result) {
          "# of T_camera_lidar: rotation_rad, then translation_m, perturbed on the left (camera) "
          "side\n"
          "covariance:\n" +
-         covariance + Averaged(result.averaged) +
-         "lidar_bias: {status: " + QuotedYaml(result.lidar_bias.status) + "}\n" +
+         covariance + Methods(result) + Averaged(result.averaged) +
+         LidarBiasYaml(result.lidar_bias) +
          "# reprojection error of the board's centre in pixels, and times the metres per pixel at "
          "the\n"
-         "# board; mean distance of the board's corners; angle between the normals\n"
+         "# board; mean distance of the board's corners; angle between the normals;\n"
+         "# all without the lidar's faults, as far as lidar_bias has them\n"
          "scores:\n" +
          Score("held_out", "each sample by the extrinsic refined without it", result.held_out) +
          Score("in_sample", "by the extrinsic made from these very samples", result.in_sample) +

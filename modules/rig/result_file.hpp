@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/diagnosis.hpp"
 #include "core/assessment/predicted_error.hpp"
 #include "core/assessment/scene_check.hpp"
@@ -20,12 +21,6 @@ namespace voqcal {
 struct RejectedSample {
   std::int64_t id = 0;
   std::string reason;
-};
-
-/// What was estimated of the lidar's systematic range errors. The refinement estimates none yet,
-/// and the file says so rather than leave a zero to be believed.
-struct LidarBias {
-  std::string status = "not estimated";
 };
 
 /// The VOQ average that the refinement started from.
@@ -49,8 +44,10 @@ struct CalibrationResult {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
   /// Of [rotation_rad; translation_m], perturbed on the left (camera side).
   Matrix6d covariance = Matrix6d::Zero();
+  RefineMethod method = RefineMethod::kAverage;  ///< That T_camera_lidar comes from.
+  std::vector<MethodTrial> trials;               ///< The scores that chose it.
   AveragedPart averaged;
-  LidarBias lidar_bias;
+  LidarBias lidar_bias;                     ///< Removed from the boards before they are scored.
   SceneScore held_out;                      ///< Each sample by the extrinsic refined without it.
   SceneScore in_sample;                     ///< Flatters: the same samples made the extrinsic.
   SceneScore of_average;                    ///< The VOQ average on all samples.

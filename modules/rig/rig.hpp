@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/diagnosis.hpp"
 #include "core/assessment/scene_check.hpp"
 #include "core/board/board_spec.hpp"
@@ -14,7 +15,6 @@
 #include "core/camera/camera_model.hpp"
 #include "core/estimation/average.hpp"
 #include "core/estimation/consistency.hpp"
-#include "core/estimation/refine.hpp"
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/selection/voq.hpp"
 #include "core/simulation/simulation.hpp"
@@ -88,7 +88,7 @@ struct Rig {
   VoqOptions voq_selector;
   SetExtrinsicOptions extrinsic_estimator;
   AverageOptions average;  ///< Under extrinsic_estimator.
-  RefineOptions extrinsic_refiner;
+  RefinerOptions extrinsic_refiner;
   SceneCheckOptions scene_check;  ///< Under assessor.
   DiagnosisOptions diagnosis;     ///< Under assessor.
 };

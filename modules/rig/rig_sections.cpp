@@ -267,13 +267,38 @@ void ReadExtrinsicEstimator(YamlSection* top,
   Finish(*options, &section);
 }
 
-void ReadExtrinsicRefiner(YamlSection* top, RefineOptions* options) {
-  YamlSection section = top->Section("extrinsic_refiner");
-  section.Read("centre_weight", &options->centre_weight);
-  section.Read("corner_weight", &options->corner_weight);
-  section.Read("huber_px", &options->huber_px);
+void ReadLikelihood(YamlSection* refiner, LikelihoodOptions* options) {
+  YamlSection section = refiner->Section("likelihood");
+  section.Read("common_prior_m", &options->common_prior_m);
+  section.Read("dark_step_prior_m", &options->dark_step_prior_m);
+  section.Read("ring_prior_m", &options->ring_prior_m);
+  section.Read("outline_lift_prior_m", &options->outline_lift_prior_m);
+  section.Read("outline_rise_prior", &options->outline_rise_prior);
+  section.Read("outline_error_m", &options->outline_error_m);
+  section.ReadDegrees("outline_error_deg", &options->outline_error_rad);
+  section.Read("camera_error_m", &options->camera_error_m);
+  section.ReadDegrees("camera_error_deg", &options->camera_error_rad);
+  section.Read("focal_length_error", &options->focal_length_error);
+  section.Read("principal_point_error_px", &options->principal_point_error_px);
+  section.Read("board_size_error", &options->board_size_error);
   section.Read("max_iterations", &options->max_iterations);
   Finish(*options, &section);
+}
+
+void ReadExtrinsicRefiner(YamlSection* top, RefinerOptions* options) {
+  YamlSection section = top->Section("extrinsic_refiner");
+  std::string method = "automatic";
+  section.Read("method", &method);
+  options->method = RefineMethodFromString(method);
+  if (!options->method && method != "automatic") {
+    section.AddError("method", "must be automatic, likelihood, reprojection or average");
+  }
+  section.Read("centre_weight", &options->reprojection.centre_weight);
+  section.Read("corner_weight", &options->reprojection.corner_weight);
+  section.Read("huber_px", &options->reprojection.huber_px);
+  section.Read("max_iterations", &options->reprojection.max_iterations);
+  ReadLikelihood(&section, &options->likelihood);
+  Finish(options->reprojection, &section);
 }
 
 void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {

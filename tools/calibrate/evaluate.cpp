@@ -10,8 +10,9 @@
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
-#include "core/assessment/scores.hpp"
+#include "core/assessment/best_extrinsic.hpp"
 #include "core/estimation/consistency.hpp"
+#include "rig/lidar_bias_yaml.hpp"
 #include "rig/result_file.hpp"
 #include "rig/rig.hpp"
 
@@ -52,7 +53,8 @@ void Evaluate(const EvaluateArgs& args) {
   for (const int index : consistency.consistent) {
     samples.push_back(&run->samples()[static_cast<std::size_t>(index)]);
   }
-  const SceneScore score = ScoreScene(samples, rig.camera, T_camera_lidar);
+  const LidarBias bias = ReadLidarBias(args.extrinsic);
+  const SceneScore score = ScoreCorrected(samples, rig.camera, T_camera_lidar, bias);
   PrintPoses(samples, score);
   for (const InconsistentSample& each : consistency.inconsistent) {
     std::printf("%6lld  left out: %s\n",

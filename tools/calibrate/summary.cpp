@@ -1,5 +1,6 @@
 #include "calibrate/summary.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -40,6 +41,25 @@ std::string TransformLines(const CalibrationResult& result) {
                 kDegPerRad * sigma[0],
                 kDegPerRad * sigma[1],
                 kDegPerRad * sigma[2]);
+}
+
+std::string MethodLines(const CalibrationResult& result) {
+  std::string text = "method  " + ToString(result.method) + " (error on poses held out:";
+  for (const MethodTrial& trial : result.trials) {
+    text += (&trial == &result.trials[0] ? " " : ", ") + ToString(trial.method) +
+            (trial.problem.empty() ? Format(" %.2f mm", trial.ErrorMm()) : ": " + trial.problem);
+  }
+  text += ")\n";
+  if (!result.lidar_bias.IsObservable()) return text + "lidar's range errors  not estimated\n";
+  double lowest_m = 0.0;
+  double highest_m = 0.0;
+  for (const BiasEstimate& ring : result.lidar_bias.rings) {
+    lowest_m = std::min(lowest_m, ring.value_m);
+    highest_m = std::max(highest_m, ring.value_m);
+  }
+  return text + "lidar's range errors  common " + result.lidar_bias.common.Text() +
+         ", dark against bright " + result.lidar_bias.dark_step.Text() +
+         Format(", rings %+.1f to %+.1f mm\n", 1e3 * lowest_m, 1e3 * highest_m);
 }
 
 std::string SceneLines(const CalibrationResult& result) {
@@ -94,7 +114,7 @@ std::string Summary(const SceneScore& score) {
 }
 
 std::string Summary(const CalibrationResult& result) {
-  std::string text = TransformLines(result);
+  std::string text = TransformLines(result) + MethodLines(result);
   text += "errors over the scene, mean +- standard deviation of " +
           std::to_string(result.used_ids.size()) + " samples\n";
   text += "  held out   " + Summary(result.held_out) + "\n";

@@ -7,8 +7,11 @@ int main(int argc, char** argv) {
   CLI::App app("Measures the accuracy of voqcal's algorithms over many seeded runs.",
                "voqcal_figures");
   app.require_subcommand(1);
+  voqcal::AddAccuracy(&app);
   voqcal::AddCameraDetection(&app);
+  voqcal::AddCoverage(&app);
   voqcal::AddLidarDetection(&app);
   voqcal::AddSceneCheckPower(&app);
+  voqcal::AddSubsets(&app);
   return voqcal::RunTool(&app, argc, argv, [] {});
 }

@@ -21,8 +21,7 @@ std::vector<BoardSample> SimulateSession(const Rig& rig, const SimulationOptions
   const Simulation world(simulation, rig.board, rig.camera);
   std::vector<BoardSample> samples;
   for (int stop = 0; stop < simulation.num_poses; ++stop) {
-    const double time_s =
-        stop * (simulation.hold_s + simulation.move_s) + 0.5 * simulation.hold_s;
+    const double time_s = stop * (simulation.hold_s + simulation.move_s) + 0.5 * simulation.hold_s;
     const auto lidar = DetectLidarBoard(world.Sweep(time_s), rig.board, rig.lidar_board_detector);
     const auto camera =
         DetectCameraBoard(world.Image(time_s), rig.camera, rig.board, rig.camera_board_detector);

@@ -67,6 +67,12 @@ ShadeScale MakeShadeScale(const std::vector<const BoardSample*>& samples) {
   return {dark, 0.5 * (dark + at(kBrightShare))};
 }
 
+bool LidarBias::IsObservable() const {
+  const auto is_observable = [](const BiasEstimate& estimate) { return estimate.is_observable; };
+  return common.is_observable || dark_step.is_observable || outline_lift.is_observable ||
+         outline_rise.is_observable || std::any_of(rings.begin(), rings.end(), is_observable);
+}
+
 double LidarBias::OffsetM(const LidarPoint& point) const {
   const double ring_m = point.ring < rings.size() ? rings[point.ring].value_m : 0.0;
   return common.value_m + dark_step.value_m * shades.ShadeOf(point.intensity) + ring_m;
@@ -87,8 +93,9 @@ BoardPose CorrectedPose(const LidarBoard& lidar, const LidarBias& bias) {
   const PlaneFit plane = PlaneOf(bias.Corrected(lidar.points_lidar_m));
   BoardPose pose = lidar.pose;
   pose.normal = plane.normal;
-  const Eigen::Vector3d lift_m = bias.outline_lift.value_m * Eigen::Vector3d::UnitZ();
-  pose.centre_m = AlongItsRay(lidar.pose.centre_m - lift_m, plane);
+  const double lift_m =
+      bias.outline_lift.value_m + bias.outline_rise.value_m * lidar.pose.centre_m.norm();
+  pose.centre_m = AlongItsRay(lidar.pose.centre_m - lift_m * Eigen::Vector3d::UnitZ(), plane);
   // The rays fix the outline's direction, the board its size.
   const Eigen::Isometry3d T_lidar_board = TransformFromPose(lidar.pose);
   const double step_m = 0.1;  // any: the direction of a line does not depend on its length

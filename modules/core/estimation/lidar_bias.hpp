@@ -45,8 +45,10 @@ struct LidarBias {
   BiasEstimate dark_step;           ///< How much longer dark surfaces read than bright ones.
   std::vector<BiasEstimate> rings;  ///< Offset of each scan line; empty if the cloud has no rings.
   ShadeScale shades;
-  BiasEstimate outline_lift;  ///< How much higher (along z) outlines look than they are.
+  BiasEstimate outline_lift;  ///< How much higher (along z) outlines look than they are...
+  BiasEstimate outline_rise;  ///< ...and how much more so for each metre of range: metres a metre.
 
+  bool IsObservable() const;  ///< Any of them.
   double OffsetM(const LidarPoint& point) const;
   /// The cloud without these errors: each point moves along its ray.
   PointCloud Corrected(const PointCloud& cloud_lidar_m) const;

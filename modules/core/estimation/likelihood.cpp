@@ -31,6 +31,7 @@ LidarBias BiasOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covarian
   bias.common = estimate(kCommon);
   bias.dark_step = estimate(kDarkStep);
   bias.outline_lift = estimate(kLift);
+  bias.outline_rise = estimate(kRise);
   for (Eigen::Index i = kFirstRing; i < search.state().faults_m.size(); ++i) {
     bias.rings.push_back(estimate(i));
   }
@@ -49,8 +50,9 @@ void AddResiduals(const LikelihoodSearch& search, LikelihoodExtrinsic* refined) 
       sum_range_m2 += residual_m * residual_m;
       ++refined->num_returns;
     }
-    sum_across_m2 +=
-        OutlineResidual(at, pose.outline, search.state().LiftM(), nullptr).head<2>().squaredNorm();
+    sum_across_m2 += OutlineResidual(at, pose.outline, search.state().LiftM(pose.outline), nullptr)
+                         .head<2>()
+                         .squaredNorm();
   }
   refined->across_rms_m = std::sqrt(sum_across_m2 / static_cast<double>(search.poses().size()));
   if (refined->num_returns == 0) return;
@@ -82,6 +84,7 @@ std::vector<std::string> LikelihoodOptions::Problems() const {
   require(ring_prior_m > 0.0, "ring_prior_m must be positive", ring_prior_m);
   require(
       outline_lift_prior_m > 0.0, "outline_lift_prior_m must be positive", outline_lift_prior_m);
+  require(outline_rise_prior > 0.0, "outline_rise_prior must be positive", outline_rise_prior);
   require(outline_error_m > 0.0, "outline_error_m must be positive", outline_error_m);
   require(outline_error_rad > 0.0, "outline_error_rad must be positive", outline_error_rad);
   require(camera_error_m > 0.0, "camera_error_m must be positive", camera_error_m);
@@ -164,6 +167,7 @@ LikelihoodExtrinsic RefineNearby(const std::vector<const BoardSample*>& samples,
   refined.bias.common.value_m = search.state().faults_m[kCommon];
   refined.bias.dark_step.value_m = search.state().faults_m[kDarkStep];
   refined.bias.outline_lift.value_m = search.state().faults_m[kLift];
+  refined.bias.outline_rise.value_m = search.state().faults_m[kRise];
   for (std::size_t i = 0; i < refined.bias.rings.size(); ++i) {
     const auto fault = kFirstRing + static_cast<Eigen::Index>(i);
     if (fault < search.state().faults_m.size()) {

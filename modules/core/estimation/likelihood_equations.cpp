@@ -64,6 +64,8 @@ void AddOutline(const LikelihoodPose& pose,
   Eigen::Matrix<double, 3, kNumDense> J = Eigen::Matrix<double, 3, kNumDense>::Zero();
   J << J_rigid, Eigen::Matrix<double, 3, kFirstRing>::Zero();
   J.col(kPoseFaultsIndex + kLift) = OutlineByLift(pose.outline);
+  J.col(kPoseFaultsIndex + kRise) =
+      pose.outline.T_lidar_board.translation().norm() * J.col(kPoseFaultsIndex + kLift);
   const Eigen::Matrix3d information = covariance.inverse();
   const Eigen::Matrix3d weight =
       CauchyWeight(residual.dot(information * residual) / 3.0) * information;
@@ -161,8 +163,11 @@ PoseEquations EquationsOf(const LikelihoodPose& pose,
                           const LikelihoodOptions& options,
                           const LikelihoodNoise& noise) {
   PoseEquations equations = EquationsOfReturns(pose, state, index, noise.range_m);
-  AddOutline(
-      pose, state.At(index), state.LiftM(), OutlineCovariance(pose, options, noise), &equations);
+  AddOutline(pose,
+             state.At(index),
+             state.LiftM(pose.outline),
+             OutlineCovariance(pose, options, noise),
+             &equations);
   AddChessboard(
       pose, state.T_camera_board[index], CameraCovariance(pose, options, noise), &equations);
   return equations;

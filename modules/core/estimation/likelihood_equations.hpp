@@ -16,19 +16,22 @@ constexpr Eigen::Index kExtrinsicSize = 6;
 constexpr Eigen::Index kCommon = 0;
 constexpr Eigen::Index kDarkStep = 1;
 constexpr Eigen::Index kLift = 2;
-constexpr Eigen::Index kFirstRing = 3;
+constexpr Eigen::Index kRise = 3;
+constexpr Eigen::Index kFirstRing = 4;
 
 /// Where the search stands.
 struct LikelihoodState {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  Eigen::VectorXd faults_m;
+  Eigen::VectorXd faults_m;  ///< The rise: metres a metre.
   std::vector<Eigen::Isometry3d> T_camera_board;
 
   double OffsetM(const BoardReturn& seen) const {
     return faults_m[kCommon] + faults_m[kDarkStep] * seen.shade +
            faults_m[kFirstRing + static_cast<Eigen::Index>(seen.ring)];
   }
-  double LiftM() const { return faults_m[kLift]; }
+  double LiftM(const OutlineRays& outline) const {
+    return faults_m[kLift] + faults_m[kRise] * outline.T_lidar_board.translation().norm();
+  }
   BoardAndLidar At(std::size_t pose) const { return {T_camera_lidar, T_camera_board[pose]}; }
 };
 

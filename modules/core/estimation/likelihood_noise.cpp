@@ -21,8 +21,8 @@ double OutlineDisagreement(const LikelihoodPose& pose,
                            const LikelihoodOptions& options,
                            const LikelihoodNoise& noise) {
   Matrix312d J;
-  const Eigen::Vector3d difference =
-      OutlineResidual({state.T_camera_lidar, pose.T_camera_board}, pose.outline, state.LiftM(), &J);
+  const Eigen::Vector3d difference = OutlineResidual(
+      {state.T_camera_lidar, pose.T_camera_board}, pose.outline, state.LiftM(pose.outline), &J);
   const Eigen::Matrix<double, 3, 6> J_board = J.rightCols<6>();
   const Eigen::Matrix3d expected =
       OutlineCovariance(pose, options, noise) +

@@ -25,6 +25,7 @@ Eigen::VectorXd PriorSigmasM(const LikelihoodOptions& options, Eigen::Index num_
   sigmas_m[kCommon] = options.common_prior_m;
   sigmas_m[kDarkStep] = options.dark_step_prior_m;
   sigmas_m[kLift] = options.outline_lift_prior_m;
+  sigmas_m[kRise] = options.outline_rise_prior;
   return sigmas_m;
 }
 
@@ -51,6 +52,7 @@ void LikelihoodSearch::StartFrom(const LidarBias& bias, const LikelihoodNoise& n
   take(kCommon, bias.common);
   take(kDarkStep, bias.dark_step);
   take(kLift, bias.outline_lift);
+  take(kRise, bias.outline_rise);
   for (Eigen::Index i = kFirstRing; i < state_.faults_m.size(); ++i) {
     take(i, bias.rings.at(static_cast<std::size_t>(i - kFirstRing)));
   }

@@ -11,6 +11,7 @@
 #include "core/estimation/likelihood_terms.hpp"
 #include "support/matchers.hpp"
 #include "support/synthetic_samples.hpp"
+#include "support/synthetic_sweeps.hpp"
 
 namespace voqcal {
 namespace {
@@ -20,82 +21,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-/// Faults of a lidar of 2 degrees between rings.
-struct Faults {
-  double common_m = 0.0;
-  double dark_step_m = 0.0;
-  double ring_sigma_m = 0.0;
-  double noise_m = 0.0;
-};
-
-constexpr int kNumRings = 16;
-constexpr double kDegree = M_PI / 180.0;
-
-std::vector<double> RingOffsetsM(const Faults& faults) {
-  test::Random random(99);
-  std::vector<double> offsets_m(kNumRings);
-  double sum_m = 0.0;
-  for (double& offset_m : offsets_m) {
-    offset_m = faults.ring_sigma_m * random.Normal();
-    sum_m += offset_m;
-  }
-  // Of zero mean: the mean is the common offset's, by definition.
-  for (double& offset_m : offsets_m) offset_m -= sum_m / kNumRings;
-  return offsets_m;
-}
-
-bool IsDark(const Eigen::Vector3d& point_board_m) {
-  const double square_m = test::TestBoard().square_m;
-  const auto column = static_cast<int>(std::floor(point_board_m.x() / square_m));
-  const auto row = static_cast<int>(std::floor(point_board_m.y() / square_m));
-  return (column + row) % 2 == 0;
-}
-
-// The returns of a sweep on the board at `T_lidar_board`.
-PointCloud SweepOn(const Eigen::Isometry3d& T_lidar_board,
-                   const Faults& faults,
-                   test::Random* random) {
-  constexpr double kAzimuthStepRad = 0.4 * kDegree;
-  const std::vector<double> ring_offsets_m = RingOffsetsM(faults);
-  const BoardSpec board = test::TestBoard();
-  PointCloud cloud;
-  cloud.has_intensity = cloud.has_ring = true;
-  for (int ring = 0; ring < kNumRings; ++ring) {
-    const double elevation_rad = (2 * ring - 15) * kDegree;
-    for (double azimuth_rad = -0.9; azimuth_rad < 0.9; azimuth_rad += kAzimuthStepRad) {
-      const Eigen::Vector3d direction(std::cos(elevation_rad) * std::cos(azimuth_rad),
-                                      std::cos(elevation_rad) * std::sin(azimuth_rad),
-                                      std::sin(elevation_rad));
-      const double range_m =
-          RangeToBoardM({Eigen::Isometry3d::Identity(), T_lidar_board}, direction, nullptr);
-      const Eigen::Vector3d hit_board_m = T_lidar_board.inverse() * (range_m * direction);
-      if (std::abs(hit_board_m.x()) > board.width_m / 2) continue;
-      if (std::abs(hit_board_m.y()) > board.height_m / 2) continue;
-      const bool is_dark = IsDark(hit_board_m);
-      const double measured_m =
-          range_m + faults.common_m + (is_dark ? 0.5 : -0.5) * faults.dark_step_m +
-          ring_offsets_m[static_cast<std::size_t>(ring)] + faults.noise_m * random->Normal();
-      LidarPoint point;
-      point.position_m = (measured_m * direction).cast<float>();
-      point.intensity = is_dark ? 1.0F : 60.0F;
-      point.ring = static_cast<std::uint16_t>(ring);
-      cloud.points.push_back(point);
-    }
-  }
-  return cloud;
-}
-
-std::vector<BoardSample> Samples(const test::SyntheticSamplesOptions& scene, const Faults& faults) {
-  test::Random random(1000 + scene.seed);
-  auto samples = test::SynthesizeSamples(scene);
-  for (BoardSample& sample : samples) {
-    const Eigen::Isometry3d T_lidar_board =
-        scene.T_camera_lidar.inverse() * TransformFromPose(sample.camera.pose);
-    sample.lidar.points_lidar_m = SweepOn(T_lidar_board, faults, &random);
-  }
-  return samples;
-}
-
 Eigen::Isometry3d RoughStart() {
   Vector6d delta;
   delta << 0.02, -0.03, 0.02, 0.03, -0.04, 0.05;
@@ -103,7 +28,7 @@ Eigen::Isometry3d RoughStart() {
 }
 
 LikelihoodExtrinsic Refine(const std::vector<BoardSample>& samples) {
-  return RefineByLikelihood(test::Pointers(samples), RoughStart(), {});
+  return RefineByLikelihood(test::Pointers(samples), test::TestCamera(), RoughStart(), {});
 }
 
 // Faults as a VLP-16 has them, and outlines that are seen with errors.
@@ -112,7 +37,7 @@ LikelihoodExtrinsic RefineFaulty(std::uint32_t seed) {
   scene.seed = seed;
   scene.lidar_centre_noise_m = 0.002;
   scene.lidar_rotation_noise_rad = 0.003;
-  return Refine(Samples(scene, {0.02, 0.015, 0.008, 0.01}));
+  return Refine(test::SamplesWithSweeps(scene, {0.02, 0.015, 0.008, 0.01}));
 }
 
 BoardAndLidar Perturbed(const BoardAndLidar& at, int parameter, double step) {
@@ -133,7 +58,7 @@ TEST(LikelihoodTerms, JacobiansAgreeWithDifferences) {
   Vector12d J_range;
   Matrix312d J_outline;
   RangeToBoardM(at, direction, &J_range);
-  OutlineResidual(at, outline, &J_outline);
+  OutlineResidual(at, outline, 0.0, &J_outline);
   for (int i = 0; i < 12; ++i) {
     const BoardAndLidar plus = Perturbed(at, i, kStep);
     const BoardAndLidar minus = Perturbed(at, i, -kStep);
@@ -141,9 +66,9 @@ TEST(LikelihoodTerms, JacobiansAgreeWithDifferences) {
         (RangeToBoardM(plus, direction, nullptr) - RangeToBoardM(minus, direction, nullptr)) /
         (2 * kStep);
     EXPECT_NEAR(J_range[i], range_slope, kTolerance) << i;
-    const Eigen::Vector3d outline_slope =
-        (OutlineResidual(plus, outline, nullptr) - OutlineResidual(minus, outline, nullptr)) /
-        (2 * kStep);
+    const Eigen::Vector3d outline_slope = (OutlineResidual(plus, outline, 0.0, nullptr) -
+                                           OutlineResidual(minus, outline, 0.0, nullptr)) /
+                                          (2 * kStep);
     EXPECT_LT((J_outline.col(i) - outline_slope).norm(), kTolerance) << i;
   }
 }
@@ -153,11 +78,11 @@ TEST(LikelihoodTerms, OutlineResidualDoesNotSeeErrorsOfRange) {
   const BoardAndLidar at{test::TestExtrinsic(), TransformFromPose(sample.camera.pose)};
   BoardPose farther = sample.lidar.pose;
   farther.centre_m *= 1.02;
-  EXPECT_LT(OutlineResidual(at, OutlineRaysOf(farther), nullptr).norm(), 1e-12);
+  EXPECT_LT(OutlineResidual(at, OutlineRaysOf(farther), 0.0, nullptr).norm(), 1e-12);
 }
 
 TEST(RefineByLikelihood, IsTheTruthOnCleanData) {
-  const LikelihoodExtrinsic refined = Refine(Samples({}, {}));
+  const LikelihoodExtrinsic refined = Refine(test::SamplesWithSweeps({}, {}));
   EXPECT_EQ(refined.status, RefineStatus::kConverged);
   // Points are stored as float: 1e-7 of 3 m, averaged over thousands.
   EXPECT_THAT(refined.T_camera_lidar, test::IsNear(test::TestExtrinsic(), 1e-7, 1e-6));
@@ -173,7 +98,7 @@ TEST(RefineByLikelihood, FindsEachFaultWithinThreeStandardErrors) {
   };
   expect_found(refined.bias.common, 0.02, "common");
   expect_found(refined.bias.dark_step, 0.015, "dark step");
-  const auto ring_offsets_m = RingOffsetsM({0, 0, 0.008, 0});
+  const auto ring_offsets_m = test::RingOffsetsM({0, 0, 0.008, 0});
   for (std::size_t i = 0; i < refined.bias.rings.size(); ++i) {
     if (refined.bias.rings[i].is_observable) {
       expect_found(refined.bias.rings[i], ring_offsets_m[i], "ring");
@@ -191,7 +116,7 @@ TEST(RefineByLikelihood, FindsTheExtrinsicWithinItsCovariance) {
     const LikelihoodExtrinsic refined = RefineFaulty(seed);
     ASSERT_TRUE(refined.IsUsable());
     const Vector6d error = DifferenceLeft(test::TestExtrinsic(), refined.T_camera_lidar);
-    sum += error.dot(refined.covariance.inverse() * error);
+    sum += error.dot(refined.uncertainty.covariance.inverse() * error);
   }
   EXPECT_LT(sum / 10, 12.0);
 }
@@ -200,17 +125,19 @@ TEST(RefineByLikelihood, SaysWhenTheCommonOffsetIsUnobservable) {
   test::SyntheticSamplesOptions scene;
   scene.max_tilt_rad = 0.0;  // all boards frontal...
   scene.spread = 0.0;        // ...at one place: an offset is the same as a step back
-  const LikelihoodExtrinsic refined = Refine(Samples(scene, {0.02, 0.015, 0.0, 0.01}));
+  const LikelihoodExtrinsic refined =
+      Refine(test::SamplesWithSweeps(scene, {0.02, 0.015, 0.0, 0.01}));
   EXPECT_FALSE(refined.bias.common.is_observable);
   EXPECT_EQ(refined.bias.common.value_m, 0.0);
   EXPECT_EQ(refined.bias.common.Text(), "unobservable");
   ASSERT_TRUE(refined.IsUsable());
   // Its prior, not narrowed to a half, is in the depth (camera z) that it cannot be told from.
-  EXPECT_GT(std::sqrt(refined.covariance(5, 5)), 0.5 * LikelihoodOptions{}.common_prior_m);
+  EXPECT_GT(std::sqrt(refined.uncertainty.covariance(5, 5)),
+            0.5 * LikelihoodOptions{}.common_prior_m);
 }
 
 TEST(RefineByLikelihood, LeavesShadesAndRingsAloneThatTheCloudLacks) {
-  auto samples = Samples({}, {0.02, 0.0, 0.0, 0.01});
+  auto samples = test::SamplesWithSweeps({}, {0.02, 0.0, 0.0, 0.01});
   for (BoardSample& sample : samples) {
     sample.lidar.points_lidar_m.has_intensity = sample.lidar.points_lidar_m.has_ring = false;
   }
@@ -230,7 +157,7 @@ TEST(RefineByLikelihood, IsTheSameForTheSameInput) {
 TEST(RefineByLikelihood, NeedsThreeSamples) {
   test::SyntheticSamplesOptions scene;
   scene.num_samples = 2;
-  EXPECT_EQ(Refine(Samples(scene, {})).status, RefineStatus::kDegenerate);
+  EXPECT_EQ(Refine(test::SamplesWithSweeps(scene, {})).status, RefineStatus::kDegenerate);
 }
 
 TEST(LikelihoodExtrinsic, SummarisesInOneLine) {
@@ -241,11 +168,11 @@ TEST(LikelihoodExtrinsic, SummarisesInOneLine) {
 }
 
 TEST(CorrectedPose, IsTheBoardWhereItIs) {
-  auto samples = Samples({}, {0.02, 0.015, 0.008, 0.0});
+  auto samples = test::SamplesWithSweeps({}, {0.02, 0.015, 0.008, 0.0});
   LidarBias bias;
   bias.common.value_m = 0.02;
   bias.dark_step.value_m = 0.015;
-  for (const double offset_m : RingOffsetsM({0, 0, 0.008, 0})) {
+  for (const double offset_m : test::RingOffsetsM({0, 0, 0.008, 0})) {
     bias.rings.push_back({offset_m, 0.0, true});
   }
   bias.shades = MakeShadeScale(test::Pointers(samples));
@@ -272,7 +199,8 @@ TEST(LikelihoodOptions, NamesEachProblem) {
   EXPECT_THAT(
       options.Problems(),
       ElementsAre("ring_prior_m must be positive, is 0", "max_iterations must be positive, is 0"));
-  EXPECT_THROW(RefineByLikelihood({}, RoughStart(), options), std::invalid_argument);
+  EXPECT_THROW(RefineByLikelihood({}, test::TestCamera(), RoughStart(), options),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -115,19 +115,46 @@ TEST(SetExtrinsicMessage, IsRefusedIfItsStatusIsUnknown) {
 }
 
 TEST(RefinedMessage, ComesBack) {
-  RefinedExtrinsic refined;
-  refined.T_camera_lidar = Transform(0.3);
-  for (int i = 0; i < 36; ++i) refined.covariance(i / 6, i % 6) = 1.0 / (3.0 + i);
-  refined.reprojection_rms_px = 1.0 / 3.0;
-  refined.status = RefineStatus::kConverged;
-  extrinsic_refined_t message = ToMessage(refined, kIds);
+  BestExtrinsic best;
+  best.method = RefineMethod::kLikelihood;
+  best.T_camera_lidar = Transform(0.3);
+  for (int i = 0; i < 36; ++i) best.covariance(i / 6, i % 6) = 1.0 / (3.0 + i);
+  best.reprojection_rms_px = 1.0 / 3.0;
+  best.held_out.poses.resize(kIds.size());
+  best.held_out.poses[1] = {0.25, 0.5, 1.0, 2.0};
+  best.trials = {{RefineMethod::kAverage, "none", {}}};
+  best.likelihood.bias.common = {0.02, 0.001, true};
+  best.likelihood.bias.rings = {{}, {-0.01, 0.002, true}};
+  best.likelihood.bias.shades = {3.0, 40.0};
+  best.likelihood.noise.camera_factor = 0.7;
+  best.likelihood.uncertainty.by_resampling << 1, 2, 3, 4, 5, 6;
+  extrinsic_refined_t message = ToMessage(best, kIds);
   EXPECT_EQ(message.sample_ids, kIds);
-  EXPECT_EQ(message.covariance[0][1], refined.covariance(0, 1));
-  EXPECT_EQ(FromMessage(message).covariance, refined.covariance);
-  EXPECT_EQ(FromMessage(message).reprojection_rms_px, refined.reprojection_rms_px);
-  EXPECT_TRUE(FromMessage(message).IsUsable());
+  EXPECT_EQ(message.covariance[0][1], best.covariance(0, 1));
+  const BestExtrinsic back = FromMessage(message);
+  EXPECT_EQ(back.method, best.method);
+  EXPECT_EQ(back.covariance, best.covariance);
+  EXPECT_EQ(back.reprojection_rms_px, best.reprojection_rms_px);
+  EXPECT_EQ(back.held_out.poses[1].corner_mm, 1.0);
+  EXPECT_EQ(back.trials.at(0).problem, "none");
+  EXPECT_EQ(back.Bias().common.value_m, 0.02);
+  EXPECT_TRUE(back.Bias().rings.at(1).is_observable);
+  EXPECT_FALSE(back.Bias().rings.at(0).is_observable);
+  EXPECT_EQ(back.Bias().shades.bright_intensity, 40.0);
+  EXPECT_EQ(back.likelihood.noise.camera_factor, 0.7);
+  EXPECT_EQ(back.likelihood.uncertainty.by_resampling, best.likelihood.uncertainty.by_resampling);
+  EXPECT_TRUE(back.IsUsable());
   message.problem = "degenerate";
   EXPECT_FALSE(FromMessage(message).IsUsable());
+  message.method = "splendid";
+  EXPECT_THROW(FromMessage(message), std::runtime_error);
+}
+
+TEST(RefinedMessage, HasNoFaultsOfAMethodThatWasNotChosen) {
+  BestExtrinsic best;
+  best.method = RefineMethod::kReprojection;
+  best.likelihood.bias.common = {0.02, 0.001, true};
+  EXPECT_FALSE(FromMessage(ToMessage(best, {})).Bias().IsObservable());
 }
 
 TEST(SceneScoreMessage, ComesBackExactly) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include "rig/lidar_bias_yaml.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace voqcal {
@@ -25,6 +26,8 @@ CalibrationResult SomeResult() {
   result.averaged.num_sets = 50;
   result.averaged.num_kept = 41;
   result.held_out.centre_mm = {3.5, 1.25, 9};
+  result.method = RefineMethod::kReprojection;
+  result.trials = {{RefineMethod::kLikelihood, "no points", {}}};
   result.used_ids = {1, 3, 4};
   result.rejected = {{2, "disagrees with \"all\" others:\n26 deg \\ 80 mm"}};
   result.made_from = {"aa", "bb", "0.1.0"};
@@ -48,6 +51,8 @@ TEST(ToYaml, IsReadBackExactly) {
   }
   EXPECT_EQ(yaml["averaged"]["num_sets_kept"].as<int>(), 41);
   EXPECT_EQ(yaml["lidar_bias"]["status"].as<std::string>(), "not estimated");
+  EXPECT_EQ(yaml["method"].as<std::string>(), "reprojection");
+  EXPECT_EQ(yaml["methods"][0]["problem"].as<std::string>(), "no points");
   EXPECT_EQ(yaml["scores"]["held_out"]["centre_mm"]["std"].as<double>(), 1.25);
   EXPECT_TRUE(std::isnan(yaml["scores"]["in_sample"]["normal_deg"]["max"].as<double>()));
   EXPECT_EQ(yaml["samples"]["used"].as<std::vector<int>>(), (std::vector<int>{1, 3, 4}));
@@ -94,6 +99,35 @@ TEST(ToYaml, SaysWhatTheAssessmentFound) {
   EXPECT_FALSE(yaml["diagnosis"][0]["explained"]);  // does not apply
   EXPECT_EQ(yaml["not_judged"][0].as<std::string>(), "time offset: at rest");
   EXPECT_EQ(YAML::Load(ToYaml(SomeResult()))["diagnosis"].size(), 0U);
+}
+
+TEST(ReadLidarBias, ReadsWhatToYamlWrites) {
+  CalibrationResult result = SomeResult();
+  result.lidar_bias.common = {0.02, 0.001, true};
+  result.lidar_bias.dark_step = {-1.0 / 3, 0.1, true};
+  result.lidar_bias.rings = {{0.0, 0.015, false}, {-0.01, 0.002, true}};
+  result.lidar_bias.outline_rise = {1e-5, 1e-6, true};
+  result.lidar_bias.shades = {3.0, 40.0};
+  const std::string text = ToYaml(result);
+  EXPECT_EQ(YAML::Load(text)["lidar_bias"]["ring_m"]["status"][0].as<std::string>(),
+            "unobservable");
+  EXPECT_EQ(YAML::Load(text)["lidar_bias"]["common_m"]["standard_error"].as<double>(), 0.001);
+  const test::TemporaryFolder folder;
+  const LidarBias bias = ReadLidarBias(folder.Write("extrinsic.yaml", text));
+  EXPECT_EQ(bias.common.value_m, 0.02);
+  EXPECT_TRUE(bias.IsObservable());
+  EXPECT_EQ(bias.dark_step.value_m, -1.0 / 3);
+  ASSERT_EQ(bias.rings.size(), 2U);
+  EXPECT_EQ(bias.rings[1].value_m, -0.01);
+  EXPECT_FALSE(bias.outline_lift.is_observable);
+  EXPECT_EQ(bias.outline_rise.value_m, 1e-5);
+  EXPECT_EQ(bias.shades.bright_intensity, 40.0);
+}
+
+TEST(ReadLidarBias, IsNoneWhereNoneWasEstimated) {
+  const test::TemporaryFolder folder;
+  EXPECT_FALSE(ReadLidarBias(folder.Write("a.yaml", ToYaml(SomeResult()))).IsObservable());
+  EXPECT_FALSE(ReadLidarBias(folder.Write("b.yaml", "T_camera_lidar: {}\n")).IsObservable());
 }
 
 TEST(ToYaml, SaysWhereTheTransformLeads) {

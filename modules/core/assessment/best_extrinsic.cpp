@@ -1,0 +1,193 @@
+#include "core/assessment/best_extrinsic.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "core/estimation/pose_variety.hpp"
+
+namespace voqcal {
+namespace {
+
+void RequireUsable(const RefinerOptions& options) {
+  const std::vector<std::string> problems = options.Problems();
+  if (!problems.empty()) throw std::invalid_argument("RefinerOptions: " + problems.front());
+}
+
+bool MostHavePoints(const std::vector<const BoardSample*>& samples) {
+  constexpr std::size_t kMinPoints = 30;  // a plane needs some
+  std::size_t num = 0;
+  for (const BoardSample* sample : samples) {
+    num += sample->lidar.points_lidar_m.points.size() >= kMinPoints ? 1 : 0;
+  }
+  return 2 * num > samples.size();
+}
+
+std::string ProblemOf(RefineStatus status) {
+  return status == RefineStatus::kConverged ? "" : "the refinement is " + ToString(status);
+}
+
+SceneScore LikelihoodHeldOut(const std::vector<const BoardSample*>& samples,
+                             const CameraModel& camera,
+                             const LikelihoodExtrinsic& all,
+                             const LikelihoodOptions& options) {
+  std::vector<PoseScore> poses(samples.size());
+  for (std::size_t left_out = 0; left_out < samples.size(); ++left_out) {
+    std::vector<const BoardSample*> others = samples;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+    const LikelihoodExtrinsic refined = RefineNearby(others, all, options);
+    if (!refined.IsUsable()) continue;
+    const BoardSample corrected = CorrectedSample(*samples[left_out], refined.bias);
+    poses[left_out] = ScorePose(corrected, camera, refined.T_camera_lidar);
+  }
+  return SummariseScores(std::move(poses));
+}
+
+MethodTrial TryAverage(const std::vector<const BoardSample*>& samples,
+                       const CameraModel& camera,
+                       const AveragedExtrinsic& average) {
+  return {RefineMethod::kAverage, "", ScoreScene(samples, camera, average.T_camera_lidar)};
+}
+
+MethodTrial TryReprojection(const std::vector<const BoardSample*>& samples,
+                            const CameraModel& camera,
+                            const Eigen::Isometry3d& T_camera_lidar_start,
+                            const RefineOptions& options,
+                            RefinedExtrinsic* refined) {
+  MethodTrial trial{RefineMethod::kReprojection, "", {}};
+  *refined = RefineExtrinsic(samples, camera, T_camera_lidar_start, options);
+  trial.problem = ProblemOf(refined->status);
+  if (refined->IsUsable()) {
+    trial.held_out = LeaveOneOutScore(samples, camera, T_camera_lidar_start, options);
+  }
+  return trial;
+}
+
+MethodTrial TryLikelihood(const std::vector<const BoardSample*>& samples,
+                          const CameraModel& camera,
+                          const Eigen::Isometry3d& T_camera_lidar_start,
+                          const LikelihoodOptions& options,
+                          LikelihoodExtrinsic* refined) {
+  MethodTrial trial{RefineMethod::kLikelihood, "", {}};
+  if (!MostHavePoints(samples)) {
+    trial.problem = "most samples have no points of the board";
+    return trial;
+  }
+  *refined = RefineByLikelihood(samples, camera, T_camera_lidar_start, options);
+  trial.problem = ProblemOf(refined->status);
+  if (refined->IsUsable()) {
+    trial.held_out = LikelihoodHeldOut(samples, camera, *refined, options);
+  }
+  return trial;
+}
+
+// The named one; else the least error. Without any score to go by, the average.
+const MethodTrial& Choose(const std::vector<MethodTrial>& trials,
+                          const std::optional<RefineMethod>& named) {
+  const MethodTrial* best = &trials.front();
+  for (const MethodTrial& trial : trials) {
+    if (named && trial.method == *named) return trial;
+    if (trial.ErrorMm() < best->ErrorMm()) best = &trial;
+  }
+  return *best;
+}
+
+double CentreRmsPx(const SceneScore& scene) {
+  return std::hypot(scene.centre_px.mean, scene.centre_px.std);
+}
+
+}  // namespace
+
+std::string ToString(RefineMethod method) {
+  switch (method) {
+    case RefineMethod::kAverage:
+      return "average";
+    case RefineMethod::kReprojection:
+      return "reprojection";
+    case RefineMethod::kLikelihood:
+      return "likelihood";
+  }
+  throw std::logic_error("unknown RefineMethod");
+}
+
+std::optional<RefineMethod> RefineMethodFromString(const std::string& name) {
+  for (const RefineMethod method :
+       {RefineMethod::kAverage, RefineMethod::kReprojection, RefineMethod::kLikelihood}) {
+    if (name == ToString(method)) return method;
+  }
+  return {};
+}
+
+std::vector<std::string> RefinerOptions::Problems() const {
+  std::vector<std::string> problems = reprojection.Problems();
+  for (const std::string& problem : likelihood.Problems()) problems.push_back(problem);
+  return problems;
+}
+
+double MethodTrial::ErrorMm() const {
+  return std::sqrt(held_out.centre_mm.mean * held_out.corner_mm.mean);
+}
+
+LidarBias BestExtrinsic::Bias() const {
+  return method == RefineMethod::kLikelihood ? likelihood.bias : LidarBias{};
+}
+
+BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias) {
+  BoardSample corrected;
+  corrected.id = sample.id;
+  corrected.utime = sample.utime;
+  corrected.num_frames = sample.num_frames;
+  corrected.camera = sample.camera;
+  corrected.lidar.pose = CorrectedPose(sample.lidar, bias);
+  corrected.lidar.edge_lengths_m = sample.lidar.edge_lengths_m;
+  return corrected;
+}
+
+SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
+                          const CameraModel& camera,
+                          const Eigen::Isometry3d& T_camera_lidar,
+                          const LidarBias& bias) {
+  if (!bias.IsObservable()) return ScoreScene(samples, camera, T_camera_lidar);
+  std::vector<PoseScore> poses;
+  for (const BoardSample* sample : samples) {
+    poses.push_back(ScorePose(CorrectedSample(*sample, bias), camera, T_camera_lidar));
+  }
+  return SummariseScores(std::move(poses));
+}
+
+BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
+                         const CameraModel& camera,
+                         const AveragedExtrinsic& average,
+                         const RefinerOptions& options) {
+  RequireUsable(options);
+  BestExtrinsic best;
+  best.T_camera_lidar = average.T_camera_lidar;
+  best.problem = VarietyProblem(samples);
+  if (!best.problem.empty()) return best;
+
+  RefinedExtrinsic reprojection;
+  const Eigen::Isometry3d& T_start = average.T_camera_lidar;
+  best.trials = {TryAverage(samples, camera, average),
+                 TryReprojection(samples, camera, T_start, options.reprojection, &reprojection),
+                 TryLikelihood(samples, camera, T_start, options.likelihood, &best.likelihood)};
+  const MethodTrial& chosen = Choose(best.trials, options.method);
+  best.method = chosen.method;
+  best.problem = chosen.problem;
+  best.held_out = chosen.held_out;
+  switch (chosen.method) {
+    case RefineMethod::kAverage:
+      best.covariance = average.spread.cwiseAbs2().asDiagonal();
+      break;
+    case RefineMethod::kReprojection:
+      best.T_camera_lidar = reprojection.T_camera_lidar;
+      best.covariance = reprojection.covariance;
+      break;
+    case RefineMethod::kLikelihood:
+      best.T_camera_lidar = best.likelihood.T_camera_lidar;
+      best.covariance = best.likelihood.uncertainty.covariance;
+      break;
+  }
+  best.reprojection_rms_px = CentreRmsPx(ScoreScene(samples, camera, best.T_camera_lidar));
+  return best;
+}
+
+}  // namespace voqcal

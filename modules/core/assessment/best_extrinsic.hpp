@@ -1,0 +1,92 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/assessment/scores.hpp"
+#include "core/board/board_sample.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/estimation/average.hpp"
+#include "core/estimation/likelihood.hpp"
+#include "core/estimation/refine.hpp"
+
+namespace voqcal {
+
+/// Where a published extrinsic comes from.
+enum class RefineMethod {
+  kAverage,       ///< The average over the chosen sets, as it is.
+  kReprojection,  ///< RefineExtrinsic.
+  kLikelihood,    ///< RefineByLikelihood.
+};
+
+std::string ToString(RefineMethod method);  ///< "average", "reprojection", "likelihood".
+/// Nothing for an unknown name.
+std::optional<RefineMethod> RefineMethodFromString(const std::string& name);
+
+struct RefinerOptions {
+  /// Nothing: the method that generalises best to poses held out.
+  std::optional<RefineMethod> method;
+  RefineOptions reprojection;
+  LikelihoodOptions likelihood;
+
+  /// One line for each broken constraint, with its value; empty if the options are usable.
+  std::vector<std::string> Problems() const;
+};
+
+/// How one method did on the data at hand.
+struct MethodTrial {
+  RefineMethod method = RefineMethod::kAverage;
+  std::string problem;  ///< Why there is no result; empty if there is one.
+  /// Each pose by the extrinsic refined without it, and with the lidar's faults removed as they
+  /// were estimated without it. The average is not refined: its scores are of the samples that
+  /// made it, which flatters it.
+  SceneScore held_out;
+
+  /// The geometric mean of the centres' error in the image and the corners' in space, mm: the one
+  /// sees what the camera is asked, the other also what it hardly sees. NaN without scores.
+  double ErrorMm() const;
+};
+
+/// The extrinsic to publish, and why.
+struct BestExtrinsic {
+  RefineMethod method = RefineMethod::kAverage;
+  std::string problem;  ///< Why there is no extrinsic, a sentence; empty if there is one.
+  /// Takes lidar coordinates to camera coordinates: p_camera = T_camera_lidar * p_lidar.
+  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
+  /// Of [rotation_rad; translation_m], perturbed on the left (camera side).
+  Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();  ///< Of the centres.
+  SceneScore held_out;                                                    ///< The chosen method's.
+  std::vector<MethodTrial> trials;  ///< Average, reprojection, likelihood.
+  /// What the likelihood found, also if another method was chosen; its status says if it did.
+  LikelihoodExtrinsic likelihood;
+
+  bool IsUsable() const { return problem.empty(); }
+  /// The lidar's faults that go with the extrinsic: none, unless it is the likelihood's.
+  LidarBias Bias() const;
+};
+
+/// The sample with the lidar's board as it would have been seen without `bias`; its points are left
+/// out.
+BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias);
+
+/// ScoreScene of the samples without `bias`; as they are if it has no fault that is observable.
+SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
+                          const CameraModel& camera,
+                          const Eigen::Isometry3d& T_camera_lidar,
+                          const LidarBias& bias);
+
+/// Refines `average` by each method (or the one that the options name) and takes the one with the
+/// least MethodTrial::ErrorMm, the average among them: what is published is never worse than it.
+/// The likelihood needs points on most boards.
+/// @throws std::invalid_argument if `options` has Problems().
+BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
+                         const CameraModel& camera,
+                         const AveragedExtrinsic& average,
+                         const RefinerOptions& options);
+
+}  // namespace voqcal

@@ -1,0 +1,158 @@
+#include "core/assessment/best_extrinsic.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/estimation/consistency.hpp"
+#include "support/matchers.hpp"
+#include "support/synthetic_sweeps.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+AveragedExtrinsic RoughAverage() {
+  Vector6d delta;
+  delta << 0.004, -0.003, 0.004, 0.006, -0.006, 0.008;
+  AveragedExtrinsic average;
+  average.T_camera_lidar = PerturbLeft(test::TestExtrinsic(), delta);
+  average.spread.setConstant(0.004);
+  average.num_kept = 50;
+  return average;
+}
+
+BestExtrinsic Best(const std::vector<const BoardSample*>& samples,
+                   const std::optional<RefineMethod>& method = {}) {
+  RefinerOptions options;
+  options.method = method;
+  return RefineBest(samples, test::TestCamera(), RoughAverage(), options);
+}
+
+test::SyntheticSamplesOptions NoisyScene(int num_samples) {
+  test::SyntheticSamplesOptions scene;
+  scene.num_samples = num_samples;
+  scene.lidar_centre_noise_m = 0.002;
+  scene.lidar_rotation_noise_rad = 0.003;
+  return scene;
+}
+
+const test::LidarFaults kFaults = {0.02, 0.015, 0.008, 0.01};
+
+TEST(RefineBest, TakesTheLikelihoodWhereTheLidarHasFaults) {
+  const auto samples = test::SamplesWithSweeps(NoisyScene(20), kFaults);
+  const BestExtrinsic best = Best(test::Pointers(samples));
+  ASSERT_TRUE(best.IsUsable()) << best.problem;
+  EXPECT_EQ(best.method, RefineMethod::kLikelihood);
+  EXPECT_TRUE(best.Bias().common.is_observable);
+  EXPECT_EQ(best.covariance, best.likelihood.uncertainty.covariance);
+  ASSERT_THAT(best.trials, SizeIs(3));
+  for (const MethodTrial& trial : best.trials) {
+    EXPECT_GE(trial.ErrorMm(), best.trials[2].ErrorMm()) << ToString(trial.method);
+  }
+}
+
+TEST(RefineBest, RefinesByReprojectionWithoutPoints) {
+  const auto samples = test::SynthesizeSamples(NoisyScene(20));
+  const BestExtrinsic best = Best(test::Pointers(samples));
+  EXPECT_EQ(best.method, RefineMethod::kReprojection);
+  EXPECT_EQ(best.trials[2].problem, "most samples have no points of the board");
+  EXPECT_FALSE(best.Bias().IsObservable());
+}
+
+TEST(RefineBest, KeepsTheAverageThatNoMethodBetters) {
+  auto samples = test::SynthesizeSamples(NoisyScene(6));
+  AveragedExtrinsic truth = RoughAverage();
+  truth.T_camera_lidar = test::TestExtrinsic();
+  // Six noisy poses hold a worse extrinsic than the truth.
+  const BestExtrinsic best =
+      RefineBest(test::Pointers(samples), test::TestCamera(), truth, RefinerOptions{});
+  EXPECT_EQ(best.method, RefineMethod::kAverage);
+  EXPECT_THAT(best.T_camera_lidar, test::IsNear(test::TestExtrinsic(), 0.0, 0.0));
+  EXPECT_EQ(best.covariance(3, 3), 0.004 * 0.004);
+}
+
+TEST(RefineBest, ObeysANamedMethod) {
+  const auto samples = test::SamplesWithSweeps(NoisyScene(10), kFaults);
+  const auto all = test::Pointers(samples);
+  EXPECT_EQ(Best(all, RefineMethod::kReprojection).method, RefineMethod::kReprojection);
+  EXPECT_EQ(Best(all, RefineMethod::kAverage).method, RefineMethod::kAverage);
+  const auto without_points = test::SynthesizeSamples({});
+  EXPECT_EQ(Best(test::Pointers(without_points), RefineMethod::kLikelihood).problem,
+            "most samples have no points of the board");
+}
+
+TEST(RefineBest, ScoresEachPoseByWhatTheOthersSay) {
+  auto samples = test::SamplesWithSweeps(NoisyScene(12), kFaults);
+  const BestExtrinsic before = Best(test::Pointers(samples), RefineMethod::kLikelihood);
+  // The board of one pose moves, in the lidar's eyes, by 5 mm across the view: the fit without it
+  // does not know, so its own error moves by all of that; one that was fitted to it would hide
+  // some.
+  const Eigen::Vector3d across_m(0.0, 0.005, 0.0);
+  samples[3].lidar.pose.centre_m += across_m;
+  for (Eigen::Vector3d& corner_m : samples[3].lidar.pose.corners_m) corner_m += across_m;
+  const BestExtrinsic after = Best(test::Pointers(samples), RefineMethod::kLikelihood);
+  ASSERT_THAT(after.held_out.poses, SizeIs(12));
+  EXPECT_GT(after.held_out.poses[3].centre_mm, 5.0 - before.held_out.poses[3].centre_mm - 0.2);
+}
+
+// Wrong samples (the lidar saw another board) are found, and what is left holds the truth.
+class RefineBestWithWrongSamples : public ::testing::TestWithParam<int> {};
+
+TEST_P(RefineBestWithWrongSamples, StaysWithinItsInterval) {
+  test::SyntheticSamplesOptions scene = NoisyScene(30);
+  scene.num_outliers = 30 * GetParam() / 100;
+  auto samples = test::SamplesWithSweeps(scene, kFaults);
+  const Consistency consistency = FindConsistent(samples, {});
+  EXPECT_THAT(consistency.inconsistent, SizeIs(static_cast<std::size_t>(scene.num_outliers)));
+  std::vector<const BoardSample*> consistent;
+  for (const int i : consistency.consistent) {
+    EXPECT_GE(i, scene.num_outliers);
+    consistent.push_back(&samples[static_cast<std::size_t>(i)]);
+  }
+  const BestExtrinsic best = Best(consistent);
+  ASSERT_TRUE(best.IsUsable());
+  const Vector6d error = DifferenceLeft(test::TestExtrinsic(), best.T_camera_lidar);
+  // Three standard deviations: one of 18 numbers is beyond with a chance of 5 %, seeds are fixed.
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_LT(std::abs(error[i]), 3.0 * std::sqrt(best.covariance(i, i))) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Percent, RefineBestWithWrongSamples, ::testing::Values(10, 20, 30));
+
+TEST(RefineBest, EndsInASentenceWherePosesCannotHoldAnExtrinsic) {
+  test::SyntheticSamplesOptions parallel;
+  parallel.max_tilt_rad = 0.0;
+  test::SyntheticSamplesOptions one_place;
+  one_place.spread = 0.0;
+  for (const auto& scene : {parallel, one_place}) {
+    const auto samples = test::SamplesWithSweeps(scene, kFaults);
+    const BestExtrinsic best = Best(test::Pointers(samples));
+    EXPECT_FALSE(best.IsUsable());
+    EXPECT_THAT(best.problem, HasSubstr("all boards are"));
+    EXPECT_TRUE(best.covariance.hasNaN());
+  }
+}
+
+TEST(RefinerOptions, NamesProblemsOfItsParts) {
+  EXPECT_THAT(RefinerOptions{}.Problems(), IsEmpty());
+  RefinerOptions options;
+  options.reprojection.huber_px = 0.0;
+  options.likelihood.ring_prior_m = 0.0;
+  EXPECT_THAT(options.Problems(), SizeIs(2));
+  EXPECT_THROW(RefineBest({}, test::TestCamera(), RoughAverage(), options), std::invalid_argument);
+}
+
+TEST(RefineMethodFromString, TakesWhatToStringGives) {
+  EXPECT_EQ(RefineMethodFromString(ToString(RefineMethod::kLikelihood)), RefineMethod::kLikelihood);
+  EXPECT_EQ(RefineMethodFromString("best"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace voqcal

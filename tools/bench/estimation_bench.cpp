@@ -2,11 +2,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/scores.hpp"
 #include "core/estimation/average.hpp"
 #include "core/estimation/consistency.hpp"
 #include "core/selection/voq.hpp"
 #include "support/synthetic_samples.hpp"
+#include "support/synthetic_sweeps.hpp"
 
 namespace voqcal {
 namespace {
@@ -68,6 +70,36 @@ void LeaveOneOutScoreOf(benchmark::State& state) {
   }
 }
 BENCHMARK(LeaveOneOutScoreOf)->Arg(30)->Unit(benchmark::kMillisecond);
+
+std::vector<BoardSample> SamplesWithSweeps(int num_samples) {
+  test::SyntheticSamplesOptions scene;
+  scene.num_samples = num_samples;
+  scene.lidar_rotation_noise_rad = 0.003;
+  scene.lidar_centre_noise_m = 0.002;
+  return test::SamplesWithSweeps(scene, {0.02, 0.015, 0.008, 0.01});
+}
+
+void RefineByLikelihoodOf(benchmark::State& state) {
+  const auto samples = SamplesWithSweeps(static_cast<int>(state.range(0)));
+  const auto all = test::Pointers(samples);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        RefineByLikelihood(all, test::TestCamera(), test::TestExtrinsic(), {}));
+  }
+}
+BENCHMARK(RefineByLikelihoodOf)->Arg(30)->Unit(benchmark::kMillisecond);
+
+// Every method, each with its leave-one-out.
+void RefineBestOf(benchmark::State& state) {
+  const auto samples = SamplesWithSweeps(static_cast<int>(state.range(0)));
+  const auto all = test::Pointers(samples);
+  AveragedExtrinsic average;
+  average.T_camera_lidar = test::TestExtrinsic();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(RefineBest(all, test::TestCamera(), average, RefinerOptions{}));
+  }
+}
+BENCHMARK(RefineBestOf)->Arg(30)->Unit(benchmark::kMillisecond);
 
 // What `calibrate --poses` computes: selection, all solutions, average, refinement.
 void WholePipelineOf(benchmark::State& state) {

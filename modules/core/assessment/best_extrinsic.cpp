@@ -135,6 +135,7 @@ BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias) {
   BoardSample corrected;
   corrected.id = sample.id;
   corrected.utime = sample.utime;
+  corrected.camera_utime = sample.camera_utime;
   corrected.num_frames = sample.num_frames;
   corrected.camera = sample.camera;
   corrected.lidar.pose = CorrectedPose(sample.lidar, bias);

@@ -23,7 +23,7 @@ struct LikelihoodOptions {
   /// 1 sigma of an error of the outlines' height (along the lidar's z) that all sweeps share: scan
   /// lines cut the outline coarsely, and always at the same elevations.
   double outline_lift_prior_m = 0.001;
-  double outline_rise_prior = 0.0002;  ///< The same, growing with the range: metres a metre.
+  double outline_rise_prior = 0.0005;  ///< The same, growing with the range: metres a metre.
   double outline_error_m = 0.001;      ///< 1 sigma of the outline fit's centre, beyond its noise.
   double outline_error_rad = 0.003;    ///< 1 sigma of its turn in the plane.
   double camera_error_m = 0.003;       ///< 1 sigma of the chessboard's depth, beyond its noise...

@@ -56,8 +56,10 @@ TEST(LikelihoodTerms, JacobiansAgreeWithDifferences) {
   const OutlineRays outline = OutlineRaysOf(sample.lidar.pose);
   const Eigen::Vector3d direction = Eigen::Vector3d(2.0, 0.3, -0.2).normalized();
   Vector12d J_range;
-  Matrix312d J_outline;
+  Matrix312d J_outline, J_plane;
   RangeToBoardM(at, direction, &J_range);
+  const Eigen::Vector3d plane = PlaneInLidar(at, &J_plane);
+  EXPECT_NEAR(1.0 / plane.dot(direction), RangeToBoardM(at, direction, nullptr), 1e-12);
   OutlineResidual(at, outline, 0.0, &J_outline);
   for (int i = 0; i < 12; ++i) {
     const BoardAndLidar plus = Perturbed(at, i, kStep);
@@ -66,6 +68,9 @@ TEST(LikelihoodTerms, JacobiansAgreeWithDifferences) {
         (RangeToBoardM(plus, direction, nullptr) - RangeToBoardM(minus, direction, nullptr)) /
         (2 * kStep);
     EXPECT_NEAR(J_range[i], range_slope, kTolerance) << i;
+    const Eigen::Vector3d plane_slope =
+        (PlaneInLidar(plus, nullptr) - PlaneInLidar(minus, nullptr)) / (2 * kStep);
+    EXPECT_LT((J_plane.col(i) - plane_slope).norm(), kTolerance) << i;
     const Eigen::Vector3d outline_slope = (OutlineResidual(plus, outline, 0.0, nullptr) -
                                            OutlineResidual(minus, outline, 0.0, nullptr)) /
                                           (2 * kStep);
@@ -79,6 +84,30 @@ TEST(LikelihoodTerms, OutlineResidualDoesNotSeeErrorsOfRange) {
   BoardPose farther = sample.lidar.pose;
   farther.centre_m *= 1.02;
   EXPECT_LT(OutlineResidual(at, OutlineRaysOf(farther), 0.0, nullptr).norm(), 1e-12);
+}
+
+TEST(LikelihoodTerms, OutlineResidualSeesALiftedOutline) {
+  const BoardSample sample = test::SynthesizeSamples({}).front();
+  const BoardAndLidar at{test::TestExtrinsic(), TransformFromPose(sample.camera.pose)};
+  BoardPose lifted = sample.lidar.pose;
+  lifted.centre_m.z() += 0.002;
+  const OutlineRays outline = OutlineRaysOf(lifted);
+  // The part of the lift along the ray, which residuals do not see, is second order in it.
+  EXPECT_LT((OutlineResidual(at, outline, 0.0, nullptr) + 0.002 * OutlineByLift(outline)).norm(),
+            1e-5);
+  EXPECT_LT(OutlineResidual(at, outline, 0.002, nullptr).norm(), 1e-5);
+}
+
+TEST(RefineByLikelihood, FindsHowMuchHigherOutlinesLook) {
+  test::LidarFaults faults;
+  faults.noise_m = 0.005;
+  faults.lift_m = 0.002;
+  const LikelihoodExtrinsic refined = Refine(test::SamplesWithSweeps({}, faults));
+  ASSERT_TRUE(refined.IsUsable());
+  // Planes hold the extrinsic against it; two priors of it, which share it between lift and rise.
+  const double at_2_m = refined.bias.outline_lift.value_m + 2.0 * refined.bias.outline_rise.value_m;
+  EXPECT_NEAR(at_2_m, 0.002, 0.001);
+  EXPECT_THAT(refined.T_camera_lidar, test::IsNear(test::TestExtrinsic(), 5e-4, 1.5e-3));
 }
 
 TEST(RefineByLikelihood, IsTheTruthOnCleanData) {

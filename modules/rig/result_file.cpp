@@ -75,7 +75,7 @@ std::string Methods(const CalibrationResult& result) {
             ", error_mm: " + NumberText(trial.ErrorMm()) +
             ", centre_mm: " + NumberText(trial.held_out.centre_mm.mean) +
             ", corner_mm: " + NumberText(trial.held_out.corner_mm.mean) +
-            ", problem: " + Quoted(trial.problem) + "}\n";
+            ", problem: " + QuotedYaml(trial.problem) + "}\n";
   }
   return text;
 }

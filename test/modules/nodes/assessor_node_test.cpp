@@ -76,7 +76,7 @@ TEST_F(AssessorNodeTest, WritesTheWholeResultAsExtrinsicYaml) {
 }
 
 TEST_F(AssessorNodeTest, HeldOutScoresAreWorseThanInSample) {
-  RunStagesBefore(test::NoisySamples(8), 8);
+  RunStagesBefore(test::NoisySamples(30), 30);
   Step(&node_);
   ASSERT_THAT(sent(), SizeIs(1));
   EXPECT_GT(sent()[0].refined_held_out.centre_mm.mean, sent()[0].refined_in_sample.centre_mm.mean);

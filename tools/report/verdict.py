@@ -108,6 +108,10 @@ def pose_checks(data):
     ]
 
 
+def sentence(text):
+    return text[:1].upper() + text[1:].rstrip(".") + "."
+
+
 def scene_checks(data):
     """The scene's own word, and the likeliest cause of what is wrong; nothing where they were not asked."""
     result = data["result"]
@@ -115,10 +119,10 @@ def scene_checks(data):
     scene = result.get("scene_check")
     if scene and scene["verdict"] != "not judged":
         agrees = scene["verdict"] == "agrees"
-        checks.append({"name": "The whole scene", "grade": GOOD if agrees else BAD, "text": scene["reason"]})
+        checks.append({"name": "The whole scene", "grade": GOOD if agrees else BAD, "text": sentence(scene["reason"])})
     if "diagnosis" in result:
         findings = result["diagnosis"]
-        text = findings[0]["text"] if findings else "Nothing was found that would explain the errors better."
+        text = sentence(findings[0]["text"]) if findings else "Nothing was found that would explain the errors better."
         checks.append({"name": "Nothing suspicious", "grade": LOOK if findings else GOOD, "text": text})
     return checks
 

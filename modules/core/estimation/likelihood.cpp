@@ -128,21 +128,21 @@ LikelihoodExtrinsic RefineByLikelihood(const std::vector<const BoardSample*>& sa
       PosesOf(samples, shades, T_camera_lidar_start), T_camera_lidar_start, options);
   for (int round = 0; round < kNoiseRounds; ++round) {
     search.Minimise(kStepsPerRound, kSettled);
-    const Eigen::MatrixXd covariance = search.Covariance();
+    const Eigen::MatrixXd covariance = search.CovarianceAllFree();
     if (covariance.size() == 0) return refined;
     search.HoldUnobservable(covariance);
     search.UpdateNoise();
   }
   refined.status = RefineStatus::kNotConverged;
   if (!search.Minimise(options.max_iterations, kSettled) || !search.IsPhysical()) return refined;
-  const Eigen::MatrixXd covariance = search.Covariance();
-  if (covariance.size() == 0) {
+  if (search.CovarianceAllFree().size() == 0) {
     refined.status = RefineStatus::kDegenerate;
     return refined;
   }
+  const SharedEquations equations = search.Equations();
   refined.T_camera_lidar = search.state().T_camera_lidar;
-  refined.uncertainty = UncertaintyOf(search, covariance, camera, options);
-  refined.bias = BiasOf(search, covariance);
+  refined.uncertainty = UncertaintyOf(search, equations, camera, options);
+  refined.bias = BiasOf(search, search.Covariance(equations));
   refined.bias.shades = shades;
   refined.noise = search.noise();
   AddResiduals(search, &refined);

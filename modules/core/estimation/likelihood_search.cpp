@@ -69,7 +69,7 @@ bool LikelihoodSearch::Minimise(int max_iterations, double small_step) {
 
 void LikelihoodSearch::UpdateNoise() { noise_ = EstimateNoise(poses_, state_, options_, noise_); }
 
-Eigen::MatrixXd LikelihoodSearch::Covariance() const {
+Eigen::MatrixXd LikelihoodSearch::CovarianceAllFree() const {
   constexpr double kLeastReciprocalCondition = 1e-10;
   const Eigen::MatrixXd information = Equations().information;
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
@@ -83,10 +83,10 @@ Eigen::MatrixXd LikelihoodSearch::Covariance() const {
   return scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
 }
 
-void LikelihoodSearch::HoldUnobservable(const Eigen::MatrixXd& covariance) {
+void LikelihoodSearch::HoldUnobservable(const Eigen::MatrixXd& covariance_all_free) {
   constexpr double kNarrowed = 0.5;  // of the prior's deviation
   for (Eigen::Index i = 0; i < state_.faults_m.size(); ++i) {
-    const double variance = covariance(kExtrinsicSize + i, kExtrinsicSize + i);
+    const double variance = covariance_all_free(kExtrinsicSize + i, kExtrinsicSize + i);
     const bool is_free = variance * prior_information_[i] <= kNarrowed * kNarrowed;
     is_free_[static_cast<std::size_t>(i)] = is_free;
     if (!is_free) state_.faults_m[i] = 0.0;
@@ -113,17 +113,40 @@ SharedEquations LikelihoodSearch::Equations() const {
   return equations;
 }
 
-double LikelihoodSearch::Step() {
-  SharedEquations equations = Equations();
+Eigen::MatrixXd LikelihoodSearch::Gain(const Eigen::MatrixXd& information) const {
+  Eigen::MatrixXd of_free = information;
   for (Eigen::Index i = 0; i < state_.faults_m.size(); ++i) {
     if (IsFree(i)) continue;
     const Eigen::Index held = kExtrinsicSize + i;
-    equations.information.row(held).setZero();
-    equations.information.col(held).setZero();
-    equations.information(held, held) = 1.0;
-    equations.pull[held] = 0.0;
+    of_free.row(held).setZero();
+    of_free.col(held).setZero();
+    of_free(held, held) = 1.0;
   }
-  const Eigen::VectorXd step = equations.information.ldlt().solve(equations.pull);
+  Eigen::MatrixXd gain =
+      of_free.ldlt().solve(Eigen::MatrixXd::Identity(of_free.rows(), of_free.cols()));
+  for (Eigen::Index i = 0; i < state_.faults_m.size(); ++i) {
+    if (!IsFree(i)) gain(kExtrinsicSize + i, kExtrinsicSize + i) = 0.0;
+  }
+  return gain;
+}
+
+Eigen::MatrixXd LikelihoodSearch::Covariance(const SharedEquations& equations) const {
+  const Eigen::MatrixXd gain = Gain(equations.information);
+  Eigen::MatrixXd covariance = gain;
+  for (Eigen::Index i = 0; i < state_.faults_m.size(); ++i) {
+    if (IsFree(i)) continue;
+    const Eigen::Index held = kExtrinsicSize + i;
+    const double variance_m2 = 1.0 / prior_information_[i];
+    const Eigen::VectorXd shift = gain * equations.information.col(held);
+    covariance += variance_m2 * shift * shift.transpose();
+    covariance(held, held) = variance_m2;
+  }
+  return covariance;
+}
+
+double LikelihoodSearch::Step() {
+  const SharedEquations equations = Equations();
+  const Eigen::VectorXd step = Gain(equations.information) * equations.pull;
   state_.T_camera_lidar = PerturbLeft(state_.T_camera_lidar, step.head<kExtrinsicSize>());
   state_.faults_m += step.tail(state_.faults_m.size());
   for (std::size_t i = 0; i < poses_.size(); ++i) {

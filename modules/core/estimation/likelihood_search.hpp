@@ -25,11 +25,21 @@ class LikelihoodSearch {
 
   void UpdateNoise();
 
-  /// Faults whose prior the data hardly narrow are held at zero from now on.
-  void HoldUnobservable(const Eigen::MatrixXd& covariance);
-
   /// Of the shared unknowns, all faults free; empty if the poses leave some of them open.
-  Eigen::MatrixXd Covariance() const;
+  Eigen::MatrixXd CovarianceAllFree() const;
+
+  /// Faults whose prior the data narrow to no less than half are held at zero from now on.
+  void HoldUnobservable(const Eigen::MatrixXd& covariance_all_free);
+
+  /// Where the search stands, by how much the shared unknowns move for a pull on them: the inverse
+  /// information, with no answer of held faults.
+  Eigen::MatrixXd Gain(const Eigen::MatrixXd& information) const;
+
+  /// Of the shared unknowns. Held faults are off by their priors, and shift the others:
+  ///     G + K S K',  K = G A,  S: the variances of the held faults' priors
+  /// with G the gain and A the information; the "consider covariance" of Schmidt 1966, "Application
+  /// of state-space methods to navigation problems", Advances in Control Systems 3.
+  Eigen::MatrixXd Covariance(const SharedEquations& equations) const;
 
   /// Where the search stands, all faults free, priors included.
   SharedEquations Equations() const;

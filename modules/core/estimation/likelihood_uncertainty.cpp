@@ -14,23 +14,26 @@ namespace {
 
 Vector6d Resampled(const LikelihoodSearch& search,
                    const SharedEquations& equations,
-                   const Eigen::MatrixXd& covariance) {
+                   const Eigen::MatrixXd& gain) {
   const auto num_poses = static_cast<Eigen::Index>(equations.poses.size());
   Eigen::Matrix<double, 6, Eigen::Dynamic> steps(6, num_poses);
   for (Eigen::Index i = 0; i < num_poses; ++i) {
     const PoseShare& out = equations.poses[static_cast<std::size_t>(i)];
-    steps.col(i) = (equations.information - out.information)
-                       .ldlt()
-                       .solve(equations.pull - out.pull)
-                       .head<kExtrinsicSize>();
+    const Eigen::MatrixXd gain_without = search.Gain(equations.information - out.information);
+    steps.col(i) = gain_without.topRows<kExtrinsicSize>() * (equations.pull - out.pull);
   }
   const double num = static_cast<double>(num_poses);
-  const Vector6d of_poses =
+  Vector6d variance =
       (num - 1.0) / num * (steps.colwise() - steps.rowwise().mean()).rowwise().squaredNorm();
-  const auto by_faults = covariance.topRightCorner(kExtrinsicSize, search.state().faults_m.size());
-  const Vector6d of_priors =
-      (by_faults * search.prior_information().asDiagonal() * by_faults.transpose()).diagonal();
-  return (of_poses + of_priors).cwiseSqrt();
+  // What poses do not tell: how far the faults are from their priors' middle.
+  for (Eigen::Index i = 0; i < search.state().faults_m.size(); ++i) {
+    const Eigen::Index fault = kExtrinsicSize + i;
+    const double information = search.prior_information()[i];
+    const Eigen::VectorXd shift = search.IsFree(i) ? Eigen::VectorXd(information * gain.col(fault))
+                                                   : gain * equations.information.col(fault);
+    variance += shift.head<kExtrinsicSize>().cwiseAbs2() / information;
+  }
+  return variance.cwiseSqrt();
 }
 
 // How the pixel of a point moves under an error of the lens.
@@ -60,7 +63,7 @@ Vector6d BoardShift(const LikelihoodPose& pose,
 
 Vector6d ModelErrors(const LikelihoodSearch& search,
                      const SharedEquations& equations,
-                     const Eigen::MatrixXd& covariance,
+                     const Eigen::MatrixXd& gain,
                      const CameraModel& camera,
                      const LikelihoodOptions& options) {
   const double trust = search.noise().camera_factor;
@@ -72,7 +75,7 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
       const PoseShare& share = equations.poses[i];
       pull -= share.to_board * (share.board_covariance * (information * board_shift(pose)));
     }
-    return Vector6d((covariance * pull).head<kExtrinsicSize>().cwiseAbs2());
+    return Vector6d((gain * pull).head<kExtrinsicSize>().cwiseAbs2());
   };
   const auto by_lens = [&](const PixelShift& shift_px) {
     return sensitivity(
@@ -99,15 +102,15 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
 }  // namespace
 
 LikelihoodUncertainty UncertaintyOf(const LikelihoodSearch& search,
-                                    const Eigen::MatrixXd& covariance,
+                                    const SharedEquations& equations,
                                     const CameraModel& camera,
                                     const LikelihoodOptions& options) {
-  const SharedEquations equations = search.Equations();
-  const Matrix6d of_extrinsic = covariance.topLeftCorner<6, 6>();
+  const Eigen::MatrixXd gain = search.Gain(equations.information);
+  const Matrix6d of_extrinsic = search.Covariance(equations).topLeftCorner<6, 6>();
   LikelihoodUncertainty uncertainty;
   uncertainty.by_likelihood = of_extrinsic.diagonal().cwiseSqrt();
-  uncertainty.by_resampling = Resampled(search, equations, covariance);
-  uncertainty.by_model_errors = ModelErrors(search, equations, covariance, camera, options);
+  uncertainty.by_resampling = Resampled(search, equations, gain);
+  uncertainty.by_model_errors = ModelErrors(search, equations, gain, camera, options);
   const Vector6d widened = uncertainty.by_likelihood.cwiseMax(uncertainty.by_resampling)
                                .cwiseMax(uncertainty.by_model_errors)
                                .cwiseQuotient(uncertainty.by_likelihood);

@@ -7,8 +7,7 @@ namespace voqcal {
 
 /// At the minimum that `search` stands at.
 ///
-/// by_likelihood: the inverse information; faults that the data cannot tell count with their
-/// priors.
+/// by_likelihood: LikelihoodSearch::Covariance.
 /// by_resampling: the poses are what varies. The delete-one jackknife, each pose taken out in one
 /// Gauss-Newton step (to first order the variance of a bootstrap over poses, without its dice:
 /// Efron and Stein 1981, "The jackknife estimate of variance", Annals of Statistics 9), and the
@@ -17,9 +16,8 @@ namespace voqcal {
 /// principal point (x, y) and size of the chessboard off by what `options` holds for plausible;
 /// root of the sum of squares.
 ///
-/// @param covariance  search.Covariance(), not empty.
 LikelihoodUncertainty UncertaintyOf(const LikelihoodSearch& search,
-                                    const Eigen::MatrixXd& covariance,
+                                    const SharedEquations& equations,
                                     const CameraModel& camera,
                                     const LikelihoodOptions& options);
 

@@ -98,6 +98,21 @@ TEST(LikelihoodTerms, OutlineResidualSeesALiftedOutline) {
   EXPECT_LT(OutlineResidual(at, outline, 0.002, nullptr).norm(), 1e-5);
 }
 
+TEST(RefineByLikelihood, FindsHowMuchHigherOutlinesLook) {
+  test::LidarFaults faults;
+  faults.noise_m = 0.005;
+  faults.lift_m = 0.002;
+  const LikelihoodExtrinsic refined = Refine(test::SamplesWithSweeps({}, faults));
+  ASSERT_TRUE(refined.IsUsable());
+  // Planes hold the extrinsic against it; two priors of it, which share it between lift and rise.
+  const double at_2_m = refined.bias.outline_lift.value_m + 2.0 * refined.bias.outline_rise.value_m;
+  EXPECT_NEAR(at_2_m, 0.002, 0.001);
+  const Vector6d error = DifferenceLeft(test::TestExtrinsic(), refined.T_camera_lidar);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_LT(std::abs(error[i]), 3.0 * std::sqrt(refined.uncertainty.covariance(i, i))) << i;
+  }
+}
+
 TEST(RefineByLikelihood, IsTheTruthOnCleanData) {
   const LikelihoodExtrinsic refined = Refine(test::SamplesWithSweeps({}, {}));
   EXPECT_EQ(refined.status, RefineStatus::kConverged);

@@ -98,7 +98,7 @@ void AssessorNode::Assess() {
 }
 
 CalibrationResult AssessorNode::Result() {
-  const std::vector<BoardSample> all = FromMessage(*samples_);
+  const std::vector<BoardSample> all = SamplesAsChosen(*samples_, averaged_->chosen);
   const std::vector<const BoardSample*> samples = SamplesWithout(all, averaged_->inconsistent_ids);
 
   const BestExtrinsic refined = FromMessage(*refined_);
@@ -136,6 +136,9 @@ CalibrationResult AssessorNode::Result() {
   result.used_ids = IdsOf(samples);
   for (std::size_t i = 0; i < averaged_->inconsistent_ids.size(); ++i) {
     result.rejected.push_back({averaged_->inconsistent_ids[i], averaged_->inconsistent_reasons[i]});
+  }
+  for (const chosen_candidate_t& each : averaged_->chosen) {
+    result.exchanged.push_back({each.sample_id, each.candidate, each.reason});
   }
   result.made_from = {samples_->log_sha256, rig_.sha256, VOQCAL_VERSION};
   return result;

@@ -40,18 +40,20 @@ extrinsic_averaged_t ExtrinsicEstimatorNode::Estimate() const {
     const std::vector<SetExtrinsic> extrinsics = CalibrateSets();
     const AveragedExtrinsic averaged = AverageExtrinsics(extrinsics, rig_.average);
     result = ToMessage(averaged, sets_->sets, extrinsics);
-    if (!averaged.IsUsable()) problem = "no set of three samples gives an extrinsic";
+    if (!averaged.IsUsable()) problem = "no set of samples gives an extrinsic";
   }
   StampMadeFrom(*samples_, &result);
   result.problem = problem;
   result.num_inconsistent = sets_->num_inconsistent;
   result.inconsistent_ids = sets_->inconsistent_ids;
   result.inconsistent_reasons = sets_->inconsistent_reasons;
+  result.num_chosen = sets_->num_chosen;
+  result.chosen = sets_->chosen;
   return result;
 }
 
 std::vector<SetExtrinsic> ExtrinsicEstimatorNode::CalibrateSets() const {
-  const std::vector<BoardSample> samples = FromMessage(*samples_);
+  const std::vector<BoardSample> samples = SamplesAsChosen(*samples_, sets_->chosen);
   const std::vector<std::int64_t> ids = IdsOf(SamplesWithout(samples, {}));
   std::vector<SetExtrinsic> extrinsics;
   for (const voq_set_t& message : sets_->sets) {

@@ -38,7 +38,7 @@ extrinsic_refined_t ExtrinsicRefinerNode::Refine() const {
   extrinsic_refined_t result{};
   result.problem = averaged_->problem;
   if (result.problem.empty()) {
-    const std::vector<BoardSample> all = FromMessage(*samples_);
+    const std::vector<BoardSample> all = SamplesAsChosen(*samples_, averaged_->chosen);
     const std::vector<const BoardSample*> samples =
         SamplesWithout(all, averaged_->inconsistent_ids);
     const BestExtrinsic best =

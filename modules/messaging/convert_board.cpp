@@ -154,7 +154,13 @@ LidarSighting SightingFromMessage(const lidar_board_t& message) {
   LidarSighting sighting;
   sighting.utime = message.utime;
   sighting.miss = message.miss;
-  if (!message.candidates.empty()) sighting.board = FromMessage(message.candidates.front());
+  for (const lidar_candidate_t& candidate : message.candidates) {
+    if (sighting.board) {
+      sighting.runners_up.push_back(FromMessage(candidate));
+    } else {
+      sighting.board = FromMessage(candidate);
+    }
+  }
   return sighting;
 }
 
@@ -174,6 +180,8 @@ sample_t ToMessage(const BoardSample& sample) {
   message.lidar = ToMessage(sample.lidar);
   message.camera = ToMessage(sample.camera);
   message.camera.utime = sample.camera_utime;
+  for (const LidarBoard& other : sample.runners_up) message.runners_up.push_back(ToMessage(other));
+  message.num_runners_up = static_cast<std::int32_t>(message.runners_up.size());
   return message;
 }
 
@@ -185,6 +193,9 @@ BoardSample FromMessage(const sample_t& message) {
   sample.lidar = FromMessage(message.lidar);
   sample.camera = FromMessage(message.camera);
   sample.camera_utime = message.camera.utime;
+  for (const lidar_candidate_t& other : message.runners_up) {
+    sample.runners_up.push_back(FromMessage(other));
+  }
   return sample;
 }
 

@@ -46,7 +46,7 @@ camera_board_t CameraBoardMessage(const std::optional<CameraBoard>& board,
                                   std::int64_t utime,
                                   std::int64_t seq);
 
-/// For the sample picker: the best candidate, or the reason for none.
+/// For the sample picker: the candidates, or the reason for none.
 LidarSighting SightingFromMessage(const lidar_board_t& message);
 CameraSighting SightingFromMessage(const camera_board_t& message);
 

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "messaging/convert_board.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -62,9 +64,10 @@ rigid_transform_t RigidTransformMessage(const Eigen::Isometry3d& T_target_source
 
 voq_set_t ToMessage(const VoqSet& set, const std::vector<std::int64_t>& sample_ids) {
   voq_set_t message{};
-  for (std::size_t i = 0; i < set.samples.size(); ++i) {
-    message.sample_ids[i] = sample_ids.at(static_cast<std::size_t>(set.samples[i]));
+  for (const int sample : set.samples) {
+    message.sample_ids.push_back(sample_ids.at(static_cast<std::size_t>(sample)));
   }
+  message.num_samples = static_cast<std::int32_t>(message.sample_ids.size());
   message.kappa_lidar = set.kappa_lidar;
   message.kappa_camera = set.kappa_camera;
   message.e_be_mm = set.board_error_mm;
@@ -74,13 +77,12 @@ voq_set_t ToMessage(const VoqSet& set, const std::vector<std::int64_t>& sample_i
 
 VoqSet FromMessage(const voq_set_t& message, const std::vector<std::int64_t>& sample_ids) {
   VoqSet set;
-  for (std::size_t i = 0; i < set.samples.size(); ++i) {
-    const auto found = std::find(sample_ids.begin(), sample_ids.end(), message.sample_ids[i]);
+  for (const std::int64_t id : message.sample_ids) {
+    const auto found = std::find(sample_ids.begin(), sample_ids.end(), id);
     if (found == sample_ids.end()) {
-      throw std::runtime_error("VOQ set message: no sample " +
-                               std::to_string(message.sample_ids[i]));
+      throw std::runtime_error("VOQ set message: no sample " + std::to_string(id));
     }
-    set.samples[i] = static_cast<int>(found - sample_ids.begin());
+    set.samples.push_back(static_cast<int>(found - sample_ids.begin()));
   }
   set.kappa_lidar = message.kappa_lidar;
   set.kappa_camera = message.kappa_camera;
@@ -89,13 +91,48 @@ VoqSet FromMessage(const voq_set_t& message, const std::vector<std::int64_t>& sa
   return set;
 }
 
-set_extrinsic_t ToMessage(const SetExtrinsic& extrinsic, const voq_set_t& set, bool is_kept) {
+chosen_candidate_t ToMessage(const ChosenCandidate& chosen,
+                             const std::vector<std::int64_t>& sample_ids) {
+  chosen_candidate_t message{};
+  message.sample_id = sample_ids.at(static_cast<std::size_t>(chosen.sample));
+  message.candidate = chosen.candidate;
+  message.reason = chosen.reason;
+  return message;
+}
+
+void TakeChosen(const std::vector<chosen_candidate_t>& chosen, std::vector<BoardSample>* samples) {
+  for (const chosen_candidate_t& each : chosen) {
+    const auto sample = std::find_if(samples->begin(), samples->end(), [&](const BoardSample& s) {
+      return s.id == each.sample_id;
+    });
+    const int num_runners_up =
+        sample == samples->end() ? 0 : static_cast<int>(sample->runners_up.size());
+    if (each.candidate < 1 || each.candidate > num_runners_up) {
+      throw std::runtime_error("sample " + std::to_string(each.sample_id) + " has no candidate " +
+                               std::to_string(each.candidate));
+    }
+    TakeCandidate(each.candidate, &*sample);
+  }
+}
+
+std::vector<BoardSample> SamplesAsChosen(const samples_t& message,
+                                         const std::vector<chosen_candidate_t>& chosen) {
+  std::vector<BoardSample> samples = FromMessage(message);
+  TakeChosen(chosen, &samples);
+  return samples;
+}
+
+set_extrinsic_t ToMessage(const SetExtrinsic& extrinsic,
+                          const voq_set_t& set,
+                          bool is_kept,
+                          const std::string& reason) {
   set_extrinsic_t message{};
   message.set = set;
   message.T_camera_lidar = ToMessage(extrinsic.T_camera_lidar);
   message.cost = extrinsic.cost;
   message.status = ToString(extrinsic.status);
   message.is_kept = is_kept ? 1 : 0;
+  message.reason = reason;
   return message;
 }
 
@@ -114,7 +151,8 @@ extrinsic_averaged_t ToMessage(const AveragedExtrinsic& average,
   message.T_camera_lidar = ToMessage(average.T_camera_lidar);
   Eigen::Map<Vector6d>(message.spread) = average.spread;
   for (std::size_t i = 0; i < extrinsics.size(); ++i) {
-    message.sets.push_back(ToMessage(extrinsics[i], sets.at(i), average.is_kept.at(i)));
+    message.sets.push_back(
+        ToMessage(extrinsics[i], sets.at(i), average.is_kept.at(i), average.reasons.at(i)));
   }
   message.num_sets = static_cast<std::int32_t>(message.sets.size());
   return message;
@@ -126,6 +164,7 @@ AveragedExtrinsic FromMessage(const extrinsic_averaged_t& message) {
   average.spread = Eigen::Map<const Vector6d>(message.spread);
   for (const set_extrinsic_t& set : message.sets) {
     average.is_kept.push_back(set.is_kept != 0);
+    average.reasons.push_back(set.reason);
     average.num_kept += set.is_kept != 0 ? 1 : 0;
   }
   return average;

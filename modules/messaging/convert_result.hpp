@@ -8,13 +8,16 @@
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/scores.hpp"
 #include "core/estimation/average.hpp"
+#include "core/estimation/consistency.hpp"
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/selection/voq.hpp"
+#include "voqcal/chosen_candidate_t.hpp"
 #include "voqcal/extrinsic_averaged_t.hpp"
 #include "voqcal/extrinsic_refined_t.hpp"
 #include "voqcal/lidar_bias_t.hpp"
 #include "voqcal/pose_score_t.hpp"
 #include "voqcal/rigid_transform_t.hpp"
+#include "voqcal/samples_t.hpp"
 #include "voqcal/scene_score_t.hpp"
 #include "voqcal/set_extrinsic_t.hpp"
 #include "voqcal/transform_t.hpp"
@@ -39,7 +42,22 @@ voq_set_t ToMessage(const VoqSet& set, const std::vector<std::int64_t>& sample_i
 /// @throws std::runtime_error if the set has a sample that `sample_ids` has not.
 VoqSet FromMessage(const voq_set_t& message, const std::vector<std::int64_t>& sample_ids);
 
-set_extrinsic_t ToMessage(const SetExtrinsic& extrinsic, const voq_set_t& set, bool is_kept);
+/// @param sample_ids  id of each sample that the indices refer to.
+chosen_candidate_t ToMessage(const ChosenCandidate& chosen,
+                             const std::vector<std::int64_t>& sample_ids);
+/// Takes for each sample the candidate that was chosen for it.
+/// @throws std::runtime_error if a sample or a candidate that was chosen is not there.
+void TakeChosen(const std::vector<chosen_candidate_t>& chosen, std::vector<BoardSample>* samples);
+/// The samples of the message, with the candidates that were chosen.
+/// @throws std::runtime_error as TakeChosen does.
+std::vector<BoardSample> SamplesAsChosen(const samples_t& message,
+                                         const std::vector<chosen_candidate_t>& chosen);
+
+/// @param reason  why it was dropped; empty if `is_kept`.
+set_extrinsic_t ToMessage(const SetExtrinsic& extrinsic,
+                          const voq_set_t& set,
+                          bool is_kept,
+                          const std::string& reason);
 /// @throws std::runtime_error for an unknown status or a broken transform.
 SetExtrinsic FromMessage(const set_extrinsic_t& message);
 

@@ -90,7 +90,13 @@ std::string Samples(const CalibrationResult& result) {
     rejected += "    - {id: " + std::to_string(sample.id) +
                 ", reason: " + QuotedYaml(sample.reason) + "}\n";
   }
-  return "samples:\n  used: [" + used + "]\n  rejected:" + rejected;
+  std::string exchanged = result.exchanged.empty() ? " []\n" : "\n";
+  for (const ExchangedSample& sample : result.exchanged) {
+    exchanged += "    - {id: " + std::to_string(sample.id) +
+                 ", candidate: " + std::to_string(sample.candidate) +
+                 ", reason: " + QuotedYaml(sample.reason) + "}\n";
+  }
+  return "samples:\n  used: [" + used + "]\n  rejected:" + rejected + "  exchanged:" + exchanged;
 }
 
 /// The matrix form as a transform; an error of the section if it is not rigid.

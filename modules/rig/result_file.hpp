@@ -23,6 +23,13 @@ struct RejectedSample {
   std::string reason;
 };
 
+/// A sample of which one of the lidar's runners-up was taken for the board, and why.
+struct ExchangedSample {
+  std::int64_t id = 0;
+  int candidate = 0;  ///< Of its runners-up: 1 is the first.
+  std::string reason;
+};
+
 /// The VOQ average that the refinement started from.
 struct AveragedPart {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
@@ -58,6 +65,7 @@ struct CalibrationResult {
   Diagnosis diagnosis;
   std::vector<std::int64_t> used_ids;
   std::vector<RejectedSample> rejected;
+  std::vector<ExchangedSample> exchanged;
   MadeFrom made_from;
 };
 

@@ -16,7 +16,7 @@
 #include "core/estimation/average.hpp"
 #include "core/estimation/consistency.hpp"
 #include "core/estimation/set_extrinsic.hpp"
-#include "core/selection/voq.hpp"
+#include "core/selection/select_sets.hpp"
 #include "core/simulation/simulation.hpp"
 
 namespace voqcal {
@@ -85,7 +85,7 @@ struct Rig {
   CameraBoardOptions camera_board_detector;
   SamplePickerOptions sample_collector;
   ConsistencyOptions consistency;  ///< Under voq_selector.
-  VoqOptions voq_selector;
+  SelectionOptions voq_selector;
   SetExtrinsicOptions extrinsic_estimator;
   AverageOptions average;  ///< Under extrinsic_estimator.
   RefinerOptions extrinsic_refiner;

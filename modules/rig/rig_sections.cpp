@@ -241,11 +241,24 @@ void ReadSampleCollector(YamlSection* top, SamplePickerOptions* options) {
   section.Read("min_new_distance_m", &options->min_new_distance_m);
   section.ReadDegrees("min_new_angle_deg", &options->min_new_angle_rad);
   section.Read("max_edge_error_m", &options->max_edge_error_m);
+  section.Read("max_candidates", &options->max_candidates);
   Finish(*options, &section);
 }
 
-void ReadVoqSelector(YamlSection* top, VoqOptions* options, ConsistencyOptions* consistency) {
+void ReadVoqSelector(YamlSection* top, SelectionOptions* options, ConsistencyOptions* consistency) {
   YamlSection section = top->Section("voq_selector");
+  std::string criterion = ToString(options->criterion);
+  section.Read("criterion", &criterion);
+  if (const auto known = SelectionCriterionFromString(criterion)) {
+    options->criterion = *known;
+  } else {
+    std::string names;
+    for (const SelectionCriterion each : AllSelectionCriteria()) {
+      names += (names.empty() ? "" : ", ") + ToString(each);
+    }
+    section.AddError("criterion", "must be one of " + names);
+  }
+  section.Read("seed", &options->seed);
   section.Read("num_sets", &options->num_sets);
   YamlSection pairs = section.Section("consistency");
   pairs.Read("max_distance_m", &consistency->max_distance_m);
@@ -358,6 +371,10 @@ void ReadRigSections(YamlDocument* document, Rig* rig) {
   ReadSampleCollector(&top, &rig->sample_collector);
   ReadVoqSelector(&top, &rig->voq_selector, &rig->consistency);
   ReadExtrinsicEstimator(&top, &rig->extrinsic_estimator, &rig->average);
+  // A table's features have no covariances: the selector then expects what the estimator does.
+  rig->voq_selector.nominal = {rig->extrinsic_estimator.sigma_normal_rad,
+                               rig->extrinsic_estimator.sigma_centre_m,
+                               rig->extrinsic_estimator.sigma_centre_px};
   ReadExtrinsicRefiner(&top, &rig->extrinsic_refiner);
   ReadAssessor(&top, &rig->scene_check, &rig->diagnosis);
   top.RefuseUnknownKeys();

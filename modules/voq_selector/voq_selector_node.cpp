@@ -11,6 +11,22 @@ namespace {
 
 std::int64_t NumCombinationsOfThree(std::int64_t n) { return n * (n - 1) * (n - 2) / 6; }
 
+// What became of the samples that do not fit the others as they are.
+void AddVerdicts(const std::vector<BoardSample>& samples,
+                 const Consistency& consistency,
+                 voq_sets_t* result) {
+  const std::vector<std::int64_t> ids = IdsOf(SamplesWithout(samples, {}));
+  for (const InconsistentSample& each : consistency.inconsistent) {
+    result->inconsistent_ids.push_back(ids[static_cast<std::size_t>(each.sample)]);
+    result->inconsistent_reasons.push_back(each.reason);
+  }
+  result->num_inconsistent = static_cast<std::int32_t>(result->inconsistent_ids.size());
+  for (const ChosenCandidate& each : consistency.chosen) {
+    result->chosen.push_back(ToMessage(each, ids));
+  }
+  result->num_chosen = static_cast<std::int32_t>(result->chosen.size());
+}
+
 }  // namespace
 
 VoqSelectorNode::VoqSelectorNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
@@ -38,30 +54,27 @@ void VoqSelectorNode::Republish() {
 voq_sets_t VoqSelectorNode::Select(const samples_t& message) const {
   voq_sets_t result{};
   StampMadeFrom(message, &result);
+  result.criterion = ToString(rig_.voq_selector.criterion);
   const std::vector<BoardSample> samples = FromMessage(message);
   const Consistency consistency = FindConsistent(samples, rig_.consistency);
-  for (const InconsistentSample& each : consistency.inconsistent) {
-    result.inconsistent_ids.push_back(samples[static_cast<std::size_t>(each.sample)].id);
-    result.inconsistent_reasons.push_back(each.reason);
-  }
-  result.num_inconsistent = static_cast<std::int32_t>(result.inconsistent_ids.size());
+  AddVerdicts(samples, consistency, &result);
 
-  std::vector<BoardSample> consistent;
-  std::vector<std::int64_t> ids;
-  for (const int index : consistency.consistent) {
-    consistent.push_back(samples[static_cast<std::size_t>(index)]);
-    ids.push_back(consistent.back().id);
-  }
+  const std::vector<BoardSample> consistent = ConsistentSamples(samples, consistency);
   result.num_combinations = NumCombinationsOfThree(static_cast<std::int64_t>(consistent.size()));
   if (consistent.size() < 3) {
     result.problem = "fewer than three samples that agree with each other: " +
                      std::to_string(consistent.size()) + " of " + std::to_string(samples.size());
     return result;
   }
-  for (const VoqSet& set : SelectByVoq(consistent, rig_.board, rig_.voq_selector)) {
+  const std::vector<std::int64_t> ids = IdsOf(SamplesWithout(consistent, {}));
+  for (const VoqSet& set : SelectSets(consistent, rig_.board, rig_.camera, rig_.voq_selector)) {
     result.sets.push_back(ToMessage(set, ids));
   }
   result.num_sets = static_cast<std::int32_t>(result.sets.size());
+  for (const VoqSet& set : SelectByVoq(consistent, rig_.board, rig_.voq_selector.num_sets)) {
+    result.lowest_voq.push_back(ToMessage(set, ids));
+  }
+  result.num_lowest_voq = static_cast<std::int32_t>(result.lowest_voq.size());
   if (result.sets.empty()) result.problem = "all boards face the same way: tilt it differently";
   return result;
 }

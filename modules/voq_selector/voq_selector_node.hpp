@@ -11,8 +11,8 @@
 
 namespace voqcal {
 
-/// CALIB_SAMPLES in, VOQ_SETS out: drops the samples that disagree with the others and chooses the
-/// sets of lowest VOQ among the rest.
+/// CALIB_SAMPLES in, VOQ_SETS out: drops the samples that disagree with the others, takes of each
+/// sample the lidar's candidate that agrees, and chooses the sets among the rest.
 class VoqSelectorNode : public Module {
  public:
   /// @param bus  borrowed; must outlive the node.
@@ -24,7 +24,7 @@ class VoqSelectorNode : public Module {
   void Republish() override;
 
  private:
-  voq_sets_t Select(const samples_t& samples) const;
+  voq_sets_t Select(const samples_t& message) const;
 
   Rig rig_;
   Bus& bus_;

@@ -6,7 +6,9 @@
 #include "core/assessment/scores.hpp"
 #include "core/estimation/average.hpp"
 #include "core/estimation/consistency.hpp"
+#include "core/selection/select_sets.hpp"
 #include "core/selection/voq.hpp"
+#include "study/all_sets.hpp"
 #include "support/synthetic_samples.hpp"
 #include "support/synthetic_sweeps.hpp"
 
@@ -24,7 +26,7 @@ std::vector<BoardSample> NoisySamples(int num_samples) {
 
 std::vector<SetExtrinsic> EstimateSets(const std::vector<BoardSample>& samples, int num_sets) {
   std::vector<SetExtrinsic> extrinsics;
-  for (const VoqSet& set : SelectByVoq(samples, test::TestBoard(), {num_sets})) {
+  for (const VoqSet& set : SelectByVoq(samples, test::TestBoard(), num_sets)) {
     std::vector<const BoardSample*> members;
     for (const int i : set.samples) members.push_back(&samples[static_cast<std::size_t>(i)]);
     extrinsics.push_back(EstimateSetExtrinsic(members, test::TestCamera(), {}));
@@ -34,15 +36,35 @@ std::vector<SetExtrinsic> EstimateSets(const std::vector<BoardSample>& samples, 
 
 void SelectByVoqOf(benchmark::State& state) {
   const auto samples = NoisySamples(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(SelectByVoq(samples, test::TestBoard(), {}));
+  for (auto _ : state) benchmark::DoNotOptimize(SelectByVoq(samples, test::TestBoard(), 50));
 }
-BENCHMARK(SelectByVoqOf)->Arg(30)->Arg(50)->Arg(200)->Unit(benchmark::kMillisecond);
+BENCHMARK(SelectByVoqOf)->Arg(30)->Arg(50)->Arg(200)->Arg(1000)->Unit(benchmark::kMillisecond);
+
+// No bound prunes here: every combination is looked at.
+void SelectBySceneErrorOf(benchmark::State& state) {
+  const auto samples = NoisySamples(static_cast<int>(state.range(0)));
+  SelectionOptions options;
+  options.criterion = SelectionCriterion::kSceneError;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(SelectSets(samples, test::TestBoard(), test::TestCamera(), options));
+  }
+}
+BENCHMARK(SelectBySceneErrorOf)->Arg(50)->Arg(200)->Unit(benchmark::kMillisecond);
+
+// Every set of N poses: all figures, solved and scored over the scene. 50 poses are 19,600 sets.
+void StudyAllSetsOf(benchmark::State& state) {
+  const auto samples = NoisySamples(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(StudyAllSets(samples, test::TestBoard(), test::TestCamera(), {}));
+  }
+}
+BENCHMARK(StudyAllSetsOf)->Arg(50)->Unit(benchmark::kMillisecond);
 
 void FindConsistentOf(benchmark::State& state) {
   const auto samples = NoisySamples(static_cast<int>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(FindConsistent(samples, {}));
 }
-BENCHMARK(FindConsistentOf)->Arg(30)->Arg(200)->Unit(benchmark::kMillisecond);
+BENCHMARK(FindConsistentOf)->Arg(30)->Arg(200)->Arg(1000)->Unit(benchmark::kMillisecond);
 
 // Selection and solution; 19,600 is every set of 50 poses.
 void EstimateSetsOf(benchmark::State& state) {

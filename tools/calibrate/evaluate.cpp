@@ -49,10 +49,8 @@ void Evaluate(const EvaluateArgs& args) {
                              CountsOf(*run) + ")");
   }
   const Consistency consistency = FindConsistent(run->samples(), rig.consistency);
-  std::vector<const BoardSample*> samples;
-  for (const int index : consistency.consistent) {
-    samples.push_back(&run->samples()[static_cast<std::size_t>(index)]);
-  }
+  const std::vector<BoardSample> consistent = ConsistentSamples(run->samples(), consistency);
+  const std::vector<const BoardSample*> samples = SamplesWithout(consistent, {});
   const LidarBias bias = ReadLidarBias(args.extrinsic);
   const SceneScore score = ScoreCorrected(samples, rig.camera, T_camera_lidar, bias);
   PrintPoses(samples, score);

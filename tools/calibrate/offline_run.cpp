@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "messaging/convert_result.hpp"
 #include "messaging/log.hpp"
 #include "sample_collector/session_log.hpp"
 
@@ -70,6 +71,12 @@ void OfflineRun::Finish(bool is_collecting_only) {
     }
     HandleAll();
   }
+}
+
+std::vector<BoardSample> OfflineRun::SamplesAsChosen() const {
+  std::vector<BoardSample> as_chosen = samples();
+  TakeChosen(averaged_.chosen, &as_chosen);
+  return as_chosen;
 }
 
 std::string OfflineRun::Losses() const {

@@ -42,6 +42,8 @@ class OfflineRun {
   void Finish(bool is_collecting_only);
 
   const std::vector<BoardSample>& samples() const { return collector_.samples(); }
+  /// The samples, each with the lidar's candidate that was chosen for it.
+  std::vector<BoardSample> SamplesAsChosen() const;
   const AssessorNode& assessor() const { return assessor_; }
   /// The newest EXTRINSIC_AVERAGED: the chosen sets and what each gave.
   const extrinsic_averaged_t& averaged() const { return averaged_; }

@@ -126,6 +126,10 @@ std::string Summary(const CalibrationResult& result) {
   for (const RejectedSample& rejected : result.rejected) {
     text += "left out\n  sample " + std::to_string(rejected.id) + ": " + rejected.reason + "\n";
   }
+  for (const ExchangedSample& exchanged : result.exchanged) {
+    text += "lidar's candidate " + std::to_string(exchanged.candidate + 1) + " taken\n  sample " +
+            std::to_string(exchanged.id) + ": the likeliest " + exchanged.reason + "\n";
+  }
   return text;
 }
 

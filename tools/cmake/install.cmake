@@ -18,6 +18,7 @@ install(DIRECTORY tools/node DESTINATION tools USE_SOURCE_PERMISSIONS
   PATTERN node_modules EXCLUDE PATTERN test EXCLUDE)
 install(DIRECTORY tools/report DESTINATION tools USE_SOURCE_PERMISSIONS
   FILES_MATCHING PATTERN *.py PATTERN *.css PATTERN *.j2)
+install(PROGRAMS tools/study/plot_study.py DESTINATION tools/study)
 install(DIRECTORY config/rigs DESTINATION config)
 install(DIRECTORY lcmtypes/ DESTINATION lcmtypes FILES_MATCHING PATTERN *.lcm)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/lcmtypes/cpp/voqcal DESTINATION include)
@@ -34,5 +35,5 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # the libraries, by dpkg-shlibdeps
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "liblcm-bin, supervisor, iproute2")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-java, libjchart2d-java, default-jre, python3-jinja2, nodejs, npm")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-java, libjchart2d-java, default-jre, python3-jinja2, python3-matplotlib, nodejs, npm")
 include(CPack)

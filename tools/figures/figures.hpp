@@ -7,6 +7,7 @@ namespace voqcal {
 // One function a figure, in a file of its own. Each adds a subcommand with its flags (a seed and a
 // number of runs among them) and a callback that prints a table: what was asked, what was reached.
 void AddAccuracy(CLI::App* app);
+void AddConsistency(CLI::App* app);
 void AddCoverage(CLI::App* app);
 void AddSubsets(CLI::App* app);
 

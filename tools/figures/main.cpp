@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   voqcal::AddAccuracy(&app);
   voqcal::AddCameraDetection(&app);
+  voqcal::AddConsistency(&app);
   voqcal::AddCoverage(&app);
   voqcal::AddLidarDetection(&app);
   voqcal::AddSceneCheckPower(&app);

@@ -187,7 +187,8 @@ void WriteOverlays(const Rig& rig,
                    const std::filesystem::path& folder) {
   const CalibrationResult& result = *run.assessor().result();
   std::map<std::int64_t, const BoardSample*> samples;
-  for (const BoardSample& sample : run.samples()) samples[sample.id] = &sample;
+  const std::vector<BoardSample> all = run.SamplesAsChosen();
+  for (const BoardSample& sample : all) samples[sample.id] = &sample;
   SessionSceneReader reader(samples_log);
   while (const std::optional<SessionScene> messages = reader.Next()) {
     const auto sample = samples.find(messages->sample_id);

@@ -117,7 +117,7 @@ Json SamplesPart(const Rig& rig, const OfflineRun& run) {
   std::map<std::int64_t, std::string> reasons;
   for (const RejectedSample& rejected : result.rejected) reasons[rejected.id] = rejected.reason;
   Json samples = Json::array();
-  for (const BoardSample& sample : run.samples()) {
+  for (const BoardSample& sample : run.SamplesAsChosen()) {
     Json part = SamplePart(sample, rig.camera);
     const auto& used = result.used_ids;
     const auto place = std::find(used.begin(), used.end(), sample.id);
@@ -179,8 +179,9 @@ std::vector<double> VoqOfAllSets(const std::vector<const BoardSample*>& samples,
 Json VoqHistogram(const Rig& rig, const OfflineRun& run) {
   constexpr std::size_t kMaxSamples = 230;  // two million sets
   constexpr std::size_t kNumBins = 48;
+  const std::vector<BoardSample> taken = run.SamplesAsChosen();
   const std::vector<const BoardSample*> samples =
-      SamplesWithout(run.samples(), run.averaged().inconsistent_ids);
+      SamplesWithout(taken, run.averaged().inconsistent_ids);
   if (samples.size() > kMaxSamples) return nullptr;
   const std::vector<double> all = VoqOfAllSets(samples, rig.board);
   if (all.empty()) return nullptr;

@@ -65,6 +65,9 @@ struct BoardSample {
   int num_frames = 1;  ///< Frames averaged.
   LidarBoard lidar;
   CameraBoard camera;
+  /// What else in the lidar's sight might be the board, likeliest first: `lidar` is only the
+  /// likeliest by its own looks.
+  std::vector<LidarBoard> runners_up{};
 };
 
 /// T_sensor_board of a pose: the rotation nearest to its edges and normal, at its centre.

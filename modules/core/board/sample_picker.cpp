@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/board/average_sightings.hpp"
 #include "core/geometry/rigid.hpp"
 
 namespace voqcal {
@@ -34,6 +35,42 @@ std::string EdgeProblem(const LidarBoard& lidar, const BoardSpec& board, double 
   return {};
 }
 
+std::vector<LidarBoard> CandidatesOf(const LidarSighting& sighting) {
+  std::vector<LidarBoard> candidates = sighting.runners_up;
+  candidates.insert(candidates.begin(), *sighting.board);
+  return candidates;
+}
+
+// Leaves only the candidates that can be this board. @return why the first cannot, if none is left.
+std::string DropWrongSizes(const BoardSpec& board, double max_edge_error_m, LidarSighting* lidar) {
+  std::vector<LidarBoard> candidates = CandidatesOf(*lidar);
+  const std::string problem = EdgeProblem(candidates.front(), board, max_edge_error_m);
+  candidates.erase(std::remove_if(candidates.begin(),
+                                  candidates.end(),
+                                  [&](const LidarBoard& candidate) {
+                                    return !EdgeProblem(candidate, board, max_edge_error_m).empty();
+                                  }),
+                   candidates.end());
+  if (candidates.empty()) return problem;
+  lidar->board = candidates.front();
+  lidar->runners_up.assign(candidates.begin() + 1, candidates.end());
+  return {};
+}
+
+// The candidate of that frame whose centre is nearest; null if none lies within reach.
+const LidarBoard* FoundAgain(const LidarBoard& board, const LidarSighting& frame, double reach_m) {
+  const LidarBoard* nearest = nullptr;
+  const auto consider = [&](const LidarBoard& candidate) {
+    const double distance_m = (candidate.pose.centre_m - board.pose.centre_m).norm();
+    if (distance_m > reach_m) return;
+    reach_m = distance_m;
+    nearest = &candidate;
+  };
+  for (const LidarBoard& candidate : frame.runners_up) consider(candidate);
+  consider(*frame.board);
+  return nearest;
+}
+
 double LargestCornerMotionPx(const CameraBoard& a, const CameraBoard& b) {
   if (a.corners_px.size() != b.corners_px.size()) return std::numeric_limits<double>::infinity();
   double same_px = 0;
@@ -44,73 +81,6 @@ double LargestCornerMotionPx(const CameraBoard& a, const CameraBoard& b) {
     turned_px = std::max(turned_px, (a.corners_px[i] - b.corners_px[n - 1 - i]).norm());
   }
   return std::min(same_px, turned_px);
-}
-
-// The same board by the half-turn whose x axis is nearer to the reference's.
-bool IsTurned(const BoardPose& pose, const BoardPose& reference) {
-  const Eigen::Vector3d x = pose.corners_m[1] - pose.corners_m[0];
-  const Eigen::Vector3d x_reference = reference.corners_m[1] - reference.corners_m[0];
-  return x.dot(x_reference) < 0;
-}
-
-// Mean of poses that differ by noise. The covariance stays that of one frame: what it covers beside
-// noise (ring offsets, the outline's model, the lens) is the same in every frame of a resting
-// board, and averaging does not lessen it.
-BoardPose MeanPose(const std::vector<BoardPose>& poses, const BoardSpec& board) {
-  std::vector<Eigen::Matrix3d> rotations;
-  Eigen::Isometry3d T_sensor_board = Eigen::Isometry3d::Identity();
-  Matrix6d covariance = Matrix6d::Zero();
-  const double n = static_cast<double>(poses.size());
-  for (const BoardPose& pose : poses) {
-    rotations.push_back(TransformFromPose(pose).linear());
-    T_sensor_board.translation() += pose.centre_m / n;
-    covariance += pose.covariance / n;
-  }
-  T_sensor_board.linear() = MeanRotation(rotations);
-  BoardPose mean = PoseFromTransform(T_sensor_board, board);
-  mean.covariance = covariance;
-  return mean;
-}
-
-LidarBoard MeanLidarBoard(const std::vector<LidarBoard>& boards, const BoardSpec& board) {
-  if (boards.size() == 1) return boards.front();
-  LidarBoard mean = boards.back();
-  const double n = static_cast<double>(boards.size());
-  std::vector<BoardPose> poses;
-  mean.edge_lengths_m.fill(0);
-  double sum_squares_m2 = 0;
-  for (const LidarBoard& each : boards) {
-    const bool is_turned = IsTurned(each.pose, boards.front().pose);
-    poses.push_back(is_turned ? TurnedByHalf(each.pose) : each.pose);
-    for (std::size_t i = 0; i < 4; ++i) {
-      mean.edge_lengths_m[i] += each.edge_lengths_m[is_turned ? (i + 2) % 4 : i] / n;
-    }
-    sum_squares_m2 += each.plane_rms_m * each.plane_rms_m;
-  }
-  mean.pose = MeanPose(poses, board);
-  mean.plane_rms_m = std::sqrt(sum_squares_m2 / n);
-  return mean;
-}
-
-CameraBoard MeanCameraBoard(const std::vector<CameraBoard>& boards, const BoardSpec& board) {
-  if (boards.size() == 1) return boards.front();
-  CameraBoard mean = boards.front();
-  const double n = static_cast<double>(boards.size());
-  std::vector<BoardPose> poses;
-  std::fill(mean.corners_px.begin(), mean.corners_px.end(), Eigen::Vector2d::Zero());
-  double sum_squares_px2 = 0;
-  for (const CameraBoard& each : boards) {
-    const bool is_turned = IsTurned(each.pose, boards.front().pose);
-    poses.push_back(is_turned ? TurnedByHalf(each.pose) : each.pose);
-    const std::size_t num_corners = each.corners_px.size();
-    for (std::size_t i = 0; i < num_corners; ++i) {
-      mean.corners_px[i] += each.corners_px[is_turned ? num_corners - 1 - i : i] / n;
-    }
-    sum_squares_px2 += each.reprojection_rms_px * each.reprojection_rms_px;
-  }
-  mean.pose = MeanPose(poses, board);
-  mean.reprojection_rms_px = std::sqrt(sum_squares_px2 / n);
-  return mean;
 }
 
 }  // namespace
@@ -130,6 +100,7 @@ std::vector<std::string> SamplePickerOptions::Problems() const {
   require(min_new_distance_m >= 0, "min_new_distance_m must not be negative", min_new_distance_m);
   require(min_new_angle_rad >= 0, "min_new_angle_rad must not be negative", min_new_angle_rad);
   require(max_edge_error_m > 0, "max_edge_error_m must be positive", max_edge_error_m);
+  require(max_candidates >= 1, "max_candidates must be at least 1", max_candidates);
   return problems;
 }
 
@@ -218,22 +189,21 @@ PickerDecision SamplePicker::DropCameraFrame() {
   return {utime, {}, "no lidar frame at that time"};
 }
 
-PickerDecision SamplePicker::JudgePair(const Pair& pair) {
+PickerDecision SamplePicker::JudgePair(Pair pair) {
   const auto reject = [this, &pair](const std::string& reason, const std::string& detail = "") {
     window_.clear();
     return PickerDecision{pair.lidar.utime, {}, reason, detail};
   };
   if (!pair.lidar.board) return reject("lidar: " + pair.lidar.miss);
   if (!pair.camera.board) return reject("camera: " + pair.camera.miss);
-  const std::string edge_problem =
-      EdgeProblem(*pair.lidar.board, board_, options_.max_edge_error_m);
+  const std::string edge_problem = DropWrongSizes(board_, options_.max_edge_error_m, &pair.lidar);
   if (!edge_problem.empty()) return reject("wrong board size", edge_problem);
 
   if (is_capture_requested_) {
     is_capture_requested_ = false;
     window_.clear();
     BoardSample sample =
-        AverageSightings({*pair.lidar.board}, {*pair.camera.board}, pair.lidar.utime, board_);
+        MakeSample(CandidatesOf(pair.lidar), {*pair.camera.board}, pair.lidar.utime);
     sample.camera_utime = pair.camera.utime;
     known_T_camera_board_.push_back(TransformFromPose(sample.camera.pose));
     return {pair.lidar.utime, std::move(sample), {}};
@@ -248,31 +218,57 @@ PickerDecision SamplePicker::JudgePair(const Pair& pair) {
   return JudgeWindow();
 }
 
+// What the newest frame ranks first must have been there before, whatever its rank was then.
 std::string SamplePicker::Motion(const Pair& pair) const {
   for (const Pair& earlier : window_) {
-    const double motion_m =
-        (pair.lidar.board->pose.centre_m - earlier.lidar.board->pose.centre_m).norm();
-    if (motion_m > options_.max_still_motion_m) return "board is moving";
-    if (LargestCornerMotionPx(*pair.camera.board, *earlier.camera.board) >
-        options_.max_still_motion_px) {
+    const bool is_found =
+        FoundAgain(*pair.lidar.board, earlier.lidar, options_.max_still_motion_m) != nullptr;
+    if (!is_found || LargestCornerMotionPx(*pair.camera.board, *earlier.camera.board) >
+                         options_.max_still_motion_px) {
       return "board is moving";
     }
   }
   return {};
 }
 
-PickerDecision SamplePicker::JudgeWindow() {
-  std::vector<LidarBoard> lidar;
-  std::vector<CameraBoard> camera;
-  for (const Pair& pair : window_) {
-    lidar.push_back(*pair.lidar.board);
-    camera.push_back(*pair.camera.board);
+std::vector<LidarBoard> SamplePicker::RestingCandidates() const {
+  std::vector<LidarBoard> resting;
+  for (const LidarBoard& candidate : CandidatesOf(window_.back().lidar)) {
+    std::vector<LidarBoard> track;
+    for (const Pair& pair : window_) {
+      const LidarBoard* found = FoundAgain(candidate, pair.lidar, options_.max_still_motion_m);
+      if (found != nullptr) track.push_back(*found);
+    }
+    if (track.size() == window_.size()) resting.push_back(MeanLidarBoard(track, board_));
   }
+  std::stable_sort(resting.begin(), resting.end(), [](const LidarBoard& a, const LidarBoard& b) {
+    return a.log_likelihood > b.log_likelihood;
+  });
+  return resting;
+}
+
+BoardSample SamplePicker::MakeSample(std::vector<LidarBoard> candidates,
+                                     const std::vector<CameraBoard>& camera,
+                                     std::int64_t utime) const {
+  const auto num_kept =
+      std::min(candidates.size(), static_cast<std::size_t>(options_.max_candidates));
+  BoardSample sample;
+  sample.utime = utime;
+  sample.num_frames = static_cast<int>(camera.size());
+  sample.camera = MeanCameraBoard(camera, board_);
+  sample.lidar = candidates.front();
+  sample.runners_up.assign(candidates.begin() + 1,
+                           candidates.begin() + static_cast<std::ptrdiff_t>(num_kept));
+  return sample;
+}
+
+PickerDecision SamplePicker::JudgeWindow() {
+  std::vector<CameraBoard> camera;
+  for (const Pair& pair : window_) camera.push_back(*pair.camera.board);
   const std::int64_t utime = window_.front().lidar.utime;
-  const std::int64_t camera_utime = window_.front().camera.utime;
+  BoardSample sample = MakeSample(RestingCandidates(), camera, utime);
+  sample.camera_utime = window_.front().camera.utime;
   window_.erase(window_.begin());  // the next pair may complete a new window
-  BoardSample sample = AverageSightings(lidar, camera, utime, board_);
-  sample.camera_utime = camera_utime;
   if (!IsNew(sample)) return {utime, {}, "pose is not new"};
   known_T_camera_board_.push_back(TransformFromPose(sample.camera.pose));
   return {utime, std::move(sample), {}};
@@ -289,22 +285,6 @@ bool SamplePicker::IsNew(const BoardSample& sample) const {
                      RotationAngleBetween(T_known.linear(), T_turned.linear()));
         return distance_m < options_.min_new_distance_m && angle_rad < options_.min_new_angle_rad;
       });
-}
-
-BoardSample AverageSightings(const std::vector<LidarBoard>& lidar,
-                             const std::vector<CameraBoard>& camera,
-                             std::int64_t utime,
-                             const BoardSpec& board) {
-  if (lidar.empty() || lidar.size() != camera.size()) {
-    throw std::invalid_argument("AverageSightings: " + std::to_string(lidar.size()) +
-                                " lidar and " + std::to_string(camera.size()) + " camera frames");
-  }
-  BoardSample sample;
-  sample.utime = utime;
-  sample.num_frames = static_cast<int>(lidar.size());
-  sample.lidar = MeanLidarBoard(lidar, board);
-  sample.camera = MeanCameraBoard(camera, board);
-  return sample;
 }
 
 }  // namespace voqcal

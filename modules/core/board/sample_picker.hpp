@@ -22,6 +22,7 @@ struct SamplePickerOptions {
       0.05;  ///< A pose is new if its centre is this far from every sample's...
   double min_new_angle_rad = 0.05;  ///< ...or its orientation differs by this much.
   double max_edge_error_m = 0.15;   ///< Largest error of one measured edge length.
+  int max_candidates = 3;           ///< Of the lidar, kept with a sample; the others' poses tell.
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;
@@ -33,6 +34,7 @@ struct Sighting {
   std::int64_t utime = 0;
   std::optional<Board> board;
   std::string miss;
+  std::vector<Board> runners_up{};  ///< Others that might be the board, best first (lidar only).
 };
 using LidarSighting = Sighting<LidarBoard>;
 using CameraSighting = Sighting<CameraBoard>;
@@ -81,8 +83,13 @@ class SamplePicker {
   int NearestCameraFrame(std::int64_t utime) const;
   /// Takes the oldest camera frame away: no lidar frame can claim it.
   PickerDecision DropCameraFrame();
-  PickerDecision JudgePair(const Pair& pair);
+  PickerDecision JudgePair(Pair pair);
   PickerDecision JudgeWindow();
+  /// What the lidar saw resting through all frames of the window: the likeliest, then the others.
+  std::vector<LidarBoard> RestingCandidates() const;
+  BoardSample MakeSample(std::vector<LidarBoard> candidates,
+                         const std::vector<CameraBoard>& camera,
+                         std::int64_t utime) const;
   /// Why the window's boards are not at rest; empty if they are.
   std::string Motion(const Pair& pair) const;
   bool IsNew(const BoardSample& sample) const;
@@ -98,14 +105,5 @@ class SamplePicker {
   std::vector<Pair> window_;  // the latest consecutive pairs with a resting board
   std::vector<Eigen::Isometry3d> known_T_camera_board_;
 };
-
-/// One sample from frames of a resting board: mean poses and corners (turned to the first frame's
-/// half-turn), the last frame's points. Covariances stay those of one frame: the errors that all
-/// frames share do not average out.
-/// @throws std::invalid_argument if there is no frame or the counts differ.
-BoardSample AverageSightings(const std::vector<LidarBoard>& lidar,
-                             const std::vector<CameraBoard>& camera,
-                             std::int64_t utime,
-                             const BoardSpec& board);
 
 }  // namespace voqcal

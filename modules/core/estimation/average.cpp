@@ -38,10 +38,23 @@ Vector6d StandardDeviation(const std::vector<Vector6d>& departures) {
   return (sum_of_squares / static_cast<double>(departures.size() - 1)).cwiseSqrt();
 }
 
-bool IsWithin(const Vector6d& departure, const Vector6d& limit) {
+// Why a result goes: the parameter that is farthest off, in standard deviations; empty if none is
+// too far.
+std::string ReasonToDrop(const Vector6d& departure, const Vector6d& deviation, double max_z_score) {
+  constexpr const char* kNames[6] = {
+      "rotation x", "rotation y", "rotation z", "translation x", "translation y", "translation z"};
   // Equal results have no spread; the slack keeps their rounding from looking like an outlier.
   constexpr double kRounding = 1e-12;
-  return (departure.cwiseAbs().array() <= limit.array() + kRounding).all();
+  if ((departure.cwiseAbs().array() <= max_z_score * deviation.array() + kRounding).all())
+    return {};
+  Eigen::Index worst = 0;
+  const double z_score =
+      (departure.cwiseAbs().array() / (deviation.array() + kRounding)).maxCoeff(&worst);
+  std::ostringstream text;
+  text.setf(std::ios::fixed);
+  text.precision(2);
+  text << kNames[worst] << " is " << z_score << " standard deviations from the mean of all sets";
+  return text.str();
 }
 
 }  // namespace
@@ -63,21 +76,27 @@ AveragedExtrinsic AverageExtrinsics(const std::vector<SetExtrinsic>& sets,
 
   AveragedExtrinsic average;
   average.is_kept.assign(sets.size(), false);
+  average.reasons.resize(sets.size());
   std::vector<Eigen::Isometry3d> usable;
   std::vector<std::size_t> usable_index;
   for (std::size_t i = 0; i < sets.size(); ++i) {
-    if (!sets[i].IsUsable()) continue;
+    if (!sets[i].IsUsable()) {
+      average.reasons[i] = ToString(sets[i].status);
+      continue;
+    }
     usable.push_back(sets[i].T_camera_lidar);
     usable_index.push_back(i);
   }
   if (usable.empty()) return average;
 
   const MeanAndDepartures all = AboutTheMean(usable);
-  Vector6d limit = options.max_z_score * StandardDeviation(all.departures);
-  if (usable.size() == 1) limit.setZero();  // one set is its own mean
+  Vector6d deviation = StandardDeviation(all.departures);
+  if (usable.size() == 1) deviation.setZero();  // one set is its own mean
   std::vector<Eigen::Isometry3d> kept;
   for (std::size_t i = 0; i < usable.size(); ++i) {
-    if (!IsWithin(all.departures[i], limit)) continue;
+    std::string& reason = average.reasons[usable_index[i]];
+    reason = ReasonToDrop(all.departures[i], deviation, options.max_z_score);
+    if (!reason.empty()) continue;
     kept.push_back(usable[i]);
     average.is_kept[usable_index[i]] = true;
   }

@@ -25,7 +25,9 @@ struct AveragedExtrinsic {
   /// NaN if fewer than two were kept: one result shows no spread.
   Vector6d spread = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
   std::vector<bool> is_kept;  ///< One for each set; unusable sets are never kept.
-  int num_kept = 0;           ///< 0: nothing to average, the transform is meaningless.
+  /// One for each set: why it was dropped, for people; empty if it was kept.
+  std::vector<std::string> reasons;
+  int num_kept = 0;  ///< 0: nothing to average, the transform is meaningless.
 
   bool IsUsable() const { return num_kept > 0; }
 };

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
-#include <tuple>
+#include <utility>
 
 #include "core/geometry/rigid.hpp"
 
@@ -20,125 +22,148 @@ struct PairError {
   bool Agrees() const { return relative <= 1.0; }  // false for NaN
 };
 
+// One of the lidar's candidates for the board of a sample.
+struct Candidate {
+  std::size_t sample = 0;
+  int rank = 0;  // 0: the sample's likeliest
+};
+
+std::vector<Candidate> CandidatesOf(const std::vector<BoardSample>& samples) {
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (int rank = 0; rank <= static_cast<int>(samples[i].runners_up.size()); ++rank) {
+      candidates.push_back({i, rank});
+    }
+  }
+  return candidates;
+}
+
+// The pairwise comparison of all candidates.
 class PairTable {
  public:
-  PairTable(const std::vector<BoardSample>& samples, const ConsistencyOptions& options)
-      : size_(samples.size()), errors_(size_ * size_) {
-    for (std::size_t i = 0; i < size_; ++i) {
-      for (std::size_t j = i + 1; j < size_; ++j) {
-        const PairError error = Compare(samples[i], samples[j], options);
-        errors_[i * size_ + j] = errors_[j * size_ + i] = error;
+  PairTable(const std::vector<BoardSample>& samples,
+            const std::vector<Candidate>& candidates,
+            const ConsistencyOptions& options)
+      : samples_(samples),
+        candidates_(candidates),
+        options_(options),
+        agrees_(candidates.size() * candidates.size(), 0) {
+    for (std::size_t i = 0; i < size(); ++i) {
+      for (std::size_t j = i + 1; j < size(); ++j) {
+        if (candidates[i].sample == candidates[j].sample) continue;  // one of them at most
+        const char agrees = Compare(i, j).Agrees() ? 1 : 0;
+        agrees_[i * size() + j] = agrees_[j * size() + i] = agrees;
       }
     }
   }
 
-  std::size_t size() const { return size_; }
-  const PairError& At(std::size_t i, std::size_t j) const { return errors_[i * size_ + j]; }
+  std::size_t size() const { return candidates_.size(); }
+  bool Agree(std::size_t i, std::size_t j) const { return agrees_[i * size() + j] != 0; }
+  const Candidate& candidate(std::size_t i) const { return candidates_[i]; }
 
- private:
-  static PairError Compare(const BoardSample& a,
-                           const BoardSample& b,
-                           const ConsistencyOptions& options) {
-    const BoardPose& la = a.lidar.pose;
-    const BoardPose& lb = b.lidar.pose;
-    const BoardPose& ca = a.camera.pose;
-    const BoardPose& cb = b.camera.pose;
+  PairError Compare(std::size_t i, std::size_t j) const {
+    const BoardPose& la = LidarPose(i);
+    const BoardPose& lb = LidarPose(j);
+    const BoardPose& ca = samples_[candidates_[i].sample].camera.pose;
+    const BoardPose& cb = samples_[candidates_[j].sample].camera.pose;
     PairError error;
     error.distance_m =
         std::abs((la.centre_m - lb.centre_m).norm() - (ca.centre_m - cb.centre_m).norm());
     error.angle_rad =
         std::abs(AngleBetween(la.normal, lb.normal) - AngleBetween(ca.normal, cb.normal));
-    const double by_distance = error.distance_m / options.max_distance_m;
-    const double by_angle = error.angle_rad / options.max_angle_rad;
+    const double by_distance = error.distance_m / options_.max_distance_m;
+    const double by_angle = error.angle_rad / options_.max_angle_rad;
     // Not std::max, which would hide a NaN.
     error.relative = by_distance > by_angle ? by_distance : by_angle;
     if (std::isnan(by_distance)) error.relative = by_distance;
     return error;
   }
 
-  std::size_t size_;
-  std::vector<PairError> errors_;
+ private:
+  const BoardPose& LidarPose(std::size_t i) const {
+    const BoardSample& sample = samples_[candidates_[i].sample];
+    const int rank = candidates_[i].rank;
+    return rank == 0 ? sample.lidar.pose
+                     : sample.runners_up[static_cast<std::size_t>(rank - 1)].pose;
+  }
+
+  const std::vector<BoardSample>& samples_;
+  const std::vector<Candidate>& candidates_;
+  const ConsistencyOptions& options_;
+  std::vector<char> agrees_;
 };
 
-using Members = std::vector<std::size_t>;
+using Members = std::vector<std::size_t>;  // ascending indices of candidates
 
-// Grows a subset from `seed`: of those that agree with all members so far, always the one that
-// agrees with most of the rest; ties by index.
-Members GrowFrom(std::size_t seed, const PairTable& pairs) {
-  Members members{seed};
-  Members candidates;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (i != seed && pairs.At(seed, i).Agrees()) candidates.push_back(i);
+// Takes away the worst candidate until all that are left agree.
+Members Peel(const PairTable& pairs) {
+  Members left(pairs.size());
+  std::iota(left.begin(), left.end(), std::size_t{0});
+  std::vector<std::size_t> num_agreeing(pairs.size(), 0);
+  for (const std::size_t i : left) {
+    for (const std::size_t j : left) num_agreeing[i] += pairs.Agree(i, j) ? 1 : 0;
   }
-  while (!candidates.empty()) {
-    std::size_t best = candidates.front();
-    std::ptrdiff_t most = -1;
-    for (const std::size_t i : candidates) {
-      const std::ptrdiff_t agreeing =
-          std::count_if(candidates.begin(), candidates.end(), [&](std::size_t j) {
-            return j != i && pairs.At(i, j).Agrees();
-          });
-      if (agreeing > most) std::tie(best, most) = std::make_pair(i, agreeing);
+  const auto is_worse = [&](std::size_t i, std::size_t j) {
+    if (num_agreeing[i] != num_agreeing[j]) return num_agreeing[i] < num_agreeing[j];
+    if (pairs.candidate(i).rank != pairs.candidate(j).rank) {
+      return pairs.candidate(i).rank > pairs.candidate(j).rank;
     }
-    members.push_back(best);
-    candidates.erase(
-        std::remove_if(candidates.begin(),
-                       candidates.end(),
-                       [&](std::size_t i) { return i == best || !pairs.At(best, i).Agrees(); }),
-        candidates.end());
+    return i > j;
+  };
+  while (!left.empty()) {
+    const auto worst = std::min_element(left.begin(), left.end(), is_worse);
+    if (num_agreeing[*worst] + 1 == left.size()) break;
+    for (const std::size_t i : left) num_agreeing[i] -= pairs.Agree(i, *worst) ? 1 : 0;
+    left.erase(worst);
+  }
+  return left;
+}
+
+// Gives back what agrees with all members, likeliest candidates first.
+Members Grow(Members members, const PairTable& pairs) {
+  Members others;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!std::binary_search(members.begin(), members.end(), i)) others.push_back(i);
+  }
+  std::stable_sort(others.begin(), others.end(), [&](std::size_t i, std::size_t j) {
+    return pairs.candidate(i).rank < pairs.candidate(j).rank;
+  });
+  for (const std::size_t i : others) {
+    const auto agrees_with = [&](std::size_t j) { return pairs.Agree(i, j); };
+    if (std::all_of(members.begin(), members.end(), agrees_with)) members.push_back(i);
   }
   std::sort(members.begin(), members.end());
   return members;
 }
 
-double SumOfErrors(const Members& members, const PairTable& pairs) {
-  double sum = 0.0;
-  for (const std::size_t i : members) {
-    for (const std::size_t j : members) sum += i == j ? 0.0 : pairs.At(i, j).relative;
-  }
-  return sum;
-}
-
-// The largest of the subsets grown from every seed; of equally large ones the one that agrees best.
-// An exact largest clique may take exponential time; right samples agree with nearly all right
-// ones, and wrong ones with few, so that growth from any right sample finds it.
-Members LargestAgreeing(const PairTable& pairs) {
-  Members largest;
-  double largest_error = 0.0;
-  for (std::size_t seed = 0; seed < pairs.size(); ++seed) {
-    Members grown = GrowFrom(seed, pairs);
-    const double error = SumOfErrors(grown, pairs);
-    if (grown.size() < largest.size()) continue;
-    if (grown.size() == largest.size() && !(error < largest_error)) continue;
-    largest = std::move(grown);
-    largest_error = error;
-  }
-  return largest;
-}
-
 // "disagrees with 28 of 29 consistent samples: ..." with the pair that is farthest off.
-std::string ReasonFor(std::size_t sample,
+std::string ReasonFor(std::size_t candidate,
                       const Members& consistent,
                       const PairTable& pairs,
                       const std::vector<BoardSample>& samples,
                       const ConsistencyOptions& options) {
   std::size_t num_disagreeing = 0;
-  std::size_t worst = consistent.front();
+  std::size_t num_others = 0;
+  std::size_t worst_sample = 0;
+  PairError worst;
   for (const std::size_t i : consistent) {
-    if (!pairs.At(sample, i).Agrees()) ++num_disagreeing;
-    const double error = pairs.At(sample, i).relative;
-    if (std::isnan(error) || error > pairs.At(sample, worst).relative) worst = i;
+    if (pairs.candidate(i).sample == pairs.candidate(candidate).sample) continue;
+    ++num_others;
+    if (!pairs.Agree(candidate, i)) ++num_disagreeing;
+    const PairError error = pairs.Compare(candidate, i);
+    if (!std::isnan(error.relative) && error.relative <= worst.relative) continue;
+    worst = error;
+    worst_sample = pairs.candidate(i).sample;
   }
-  const PairError& error = pairs.At(sample, worst);
   constexpr double kDegreesPerRadian = 180.0 / M_PI;
   std::ostringstream text;
   text.setf(std::ios::fixed);
   text.precision(1);
-  text << "disagrees with " << num_disagreeing << " of " << consistent.size()
-       << " consistent samples; worst with sample " << samples[worst].id
-       << ": centre distances differ by " << 1000.0 * error.distance_m << " mm (limit "
+  text << "disagrees with " << num_disagreeing << " of " << num_others
+       << " consistent samples; worst with sample " << samples[worst_sample].id
+       << ": centre distances differ by " << 1000.0 * worst.distance_m << " mm (limit "
        << 1000.0 * options.max_distance_m << "), normal angles by "
-       << kDegreesPerRadian * error.angle_rad << " deg (limit "
+       << kDegreesPerRadian * worst.angle_rad << " deg (limit "
        << kDegreesPerRadian * options.max_angle_rad << ")";
   return text.str();
 }
@@ -170,17 +195,43 @@ Consistency FindConsistent(const std::vector<BoardSample>& samples,
       result.consistent.push_back(static_cast<int>(i));
     return result;
   }
-  const PairTable pairs(samples, options);
-  const Members consistent = LargestAgreeing(pairs);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (std::binary_search(consistent.begin(), consistent.end(), i)) {
-      result.consistent.push_back(static_cast<int>(i));
-    } else {
-      result.inconsistent.push_back(
-          {static_cast<int>(i), ReasonFor(i, consistent, pairs, samples, options)});
+  const std::vector<Candidate> candidates = CandidatesOf(samples);
+  const PairTable pairs(samples, candidates, options);
+  const Members members = Grow(Peel(pairs), pairs);
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> member_of(samples.size(), kNone);
+  for (const std::size_t i : members) member_of[candidates[i].sample] = i;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].rank != 0) continue;  // once a sample, at its likeliest candidate
+    const std::size_t member = member_of[candidates[i].sample];
+    const int sample = static_cast<int>(candidates[i].sample);
+    const auto reason = [&] { return ReasonFor(i, members, pairs, samples, options); };
+    if (member == kNone) {
+      result.inconsistent.push_back({sample, reason()});
+      continue;
     }
+    result.consistent.push_back(sample);
+    if (member != i) result.chosen.push_back({sample, candidates[member].rank, reason()});
   }
   return result;
+}
+
+void TakeCandidate(int candidate, BoardSample* sample) {
+  if (candidate < 1) throw std::out_of_range("no runner-up " + std::to_string(candidate));
+  std::swap(sample->lidar, sample->runners_up.at(static_cast<std::size_t>(candidate - 1)));
+}
+
+std::vector<BoardSample> ConsistentSamples(const std::vector<BoardSample>& samples,
+                                           const Consistency& consistency) {
+  std::vector<BoardSample> consistent;
+  auto chosen = consistency.chosen.begin();
+  for (const int index : consistency.consistent) {
+    consistent.push_back(samples[static_cast<std::size_t>(index)]);
+    if (chosen == consistency.chosen.end() || chosen->sample != index) continue;
+    TakeCandidate(chosen->candidate, &consistent.back());
+    ++chosen;
+  }
+  return consistent;
 }
 
 }  // namespace voqcal

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <tuple>
+#include <string>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+
+#include "core/selection/best_sets.hpp"
 
 namespace voqcal {
 namespace {
@@ -17,92 +20,72 @@ constexpr double kLeastKappa = 3.0;  // of any 3x3 matrix: ||N||_F ||N^-1||_F >=
 // A determinant of three unit vectors below this is rounding: kappa would exceed about 1e6.
 constexpr double kSingularDeterminant = 1e-12;
 
-struct RankedSample {
+// What VOQ needs of one sample.
+struct RankedPose {
   int sample = 0;
   double dimension_error_mm = 0.0;
+  Eigen::Vector3d normal_lidar, normal_camera;
 };
 
-// The order of the answer: lowest VOQ first, ties by index.
-bool IsBetter(const VoqSet& a, const VoqSet& b) {
-  return std::tie(a.voq, a.samples) < std::tie(b.voq, b.samples);
-}
-
 // The samples with a measured size, best first. The lower bound of the search relies on this order.
-std::vector<RankedSample> RankByDimensionError(const std::vector<BoardSample>& samples,
-                                               const BoardSpec& board) {
-  std::vector<RankedSample> ranked;
+std::vector<RankedPose> RankByDimensionError(const std::vector<BoardSample>& samples,
+                                             const BoardSpec& board) {
+  std::vector<RankedPose> ranked;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double error_mm = BoardDimensionErrorMm(samples[i].lidar.edge_lengths_m, board);
-    if (std::isfinite(error_mm)) ranked.push_back({static_cast<int>(i), error_mm});
+    if (!std::isfinite(error_mm)) continue;
+    ranked.push_back({static_cast<int>(i),
+                      error_mm,
+                      samples[i].lidar.pose.normal,
+                      samples[i].camera.pose.normal});
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const RankedSample& a, const RankedSample& b) {
+  std::stable_sort(ranked.begin(), ranked.end(), [](const RankedPose& a, const RankedPose& b) {
     return a.dimension_error_mm < b.dimension_error_mm;
   });
   return ranked;
 }
 
-VoqSet MakeSet(const std::vector<BoardSample>& samples, std::array<RankedSample, 3> members) {
-  // Ascending, so that every sum below is taken in one order however the search came here.
-  std::sort(members.begin(), members.end(), [](const RankedSample& a, const RankedSample& b) {
-    return a.sample < b.sample;
+// The members in ascending order of their samples, so that every sum is taken in one order however
+// the search came here.
+ScoredTriple Score(const RankedPose& p0, const RankedPose& p1, const RankedPose& p2) {
+  std::array<const RankedPose*, 3> p = {&p0, &p1, &p2};
+  std::sort(p.begin(), p.end(), [](const RankedPose* a, const RankedPose* b) {
+    return a->sample < b->sample;
   });
-  const BoardSample& s0 = samples[static_cast<std::size_t>(members[0].sample)];
-  const BoardSample& s1 = samples[static_cast<std::size_t>(members[1].sample)];
-  const BoardSample& s2 = samples[static_cast<std::size_t>(members[2].sample)];
-  VoqSet set;
-  set.samples = {members[0].sample, members[1].sample, members[2].sample};
-  set.kappa_lidar =
-      NormalConditionNumber(s0.lidar.pose.normal, s1.lidar.pose.normal, s2.lidar.pose.normal);
-  set.kappa_camera =
-      NormalConditionNumber(s0.camera.pose.normal, s1.camera.pose.normal, s2.camera.pose.normal);
-  set.board_error_mm = (members[0].dimension_error_mm + members[1].dimension_error_mm +
-                        members[2].dimension_error_mm) /
-                       3.0;
-  set.voq = std::max(set.kappa_lidar, set.kappa_camera) + set.board_error_mm;
-  return set;
+  const double kappa = std::max(
+      NormalConditionNumber(p[0]->normal_lidar, p[1]->normal_lidar, p[2]->normal_lidar),
+      NormalConditionNumber(p[0]->normal_camera, p[1]->normal_camera, p[2]->normal_camera));
+  const double board_error_mm =
+      (p[0]->dimension_error_mm + p[1]->dimension_error_mm + p[2]->dimension_error_mm) / 3.0;
+  return {{p[0]->sample, p[1]->sample, p[2]->sample}, kappa + board_error_mm};
 }
 
-// The best sets so far, as a heap whose front is the worst of them.
-class BestSets {
- public:
-  explicit BestSets(int num_sets) : num_sets_(static_cast<std::size_t>(num_sets)) {}
+// False if no set with this e_be can be among the best any more.
+bool CanEnter(const BestSets& best, double board_error_mm) {
+  constexpr double kRoundingMargin = 1e-6;
+  return kLeastKappa + board_error_mm <= best.Limit() + kRoundingMargin;
+}
 
-  // False if no set with this e_be can be among the best any more.
-  bool CanBeat(double board_error_mm) const {
-    constexpr double kRoundingMargin = 1e-6;
-    return sets_.size() < num_sets_ ||
-           kLeastKappa + board_error_mm <= sets_.front().voq + kRoundingMargin;
-  }
-
-  void Offer(const VoqSet& set) {
-    if (sets_.size() == num_sets_) {
-      if (!IsBetter(set, sets_.front())) return;
-      std::pop_heap(sets_.begin(), sets_.end(), IsBetter);
-      sets_.pop_back();
+// Branch and bound over all combinations: kappa is never below 3 and e_dim ascends, so once 3 +
+// e_be exceeds the worst set kept, so do all later sets of the same loop.
+std::vector<ScoredTriple> LowestVoq(const std::vector<RankedPose>& ranked, int num_sets) {
+  const auto error_mm = [&ranked](std::size_t i) { return ranked[i].dimension_error_mm; };
+  BestSets best(num_sets);
+  for (std::size_t i = 0; i + 2 < ranked.size(); ++i) {
+    if (!CanEnter(best, (error_mm(i) + error_mm(i + 1) + error_mm(i + 2)) / 3.0)) break;
+    for (std::size_t j = i + 1; j + 1 < ranked.size(); ++j) {
+      if (!CanEnter(best, (error_mm(i) + error_mm(j) + error_mm(j + 1)) / 3.0)) break;
+      for (std::size_t k = j + 1; k < ranked.size(); ++k) {
+        if (!CanEnter(best, (error_mm(i) + error_mm(j) + error_mm(k)) / 3.0)) break;
+        const ScoredTriple set = Score(ranked[i], ranked[j], ranked[k]);
+        if (std::isfinite(set.score)) best.Offer(set);
+      }
     }
-    sets_.push_back(set);
-    std::push_heap(sets_.begin(), sets_.end(), IsBetter);
   }
-
-  std::vector<VoqSet> Sorted() && {
-    std::sort_heap(sets_.begin(), sets_.end(), IsBetter);
-    return std::move(sets_);
-  }
-
- private:
-  std::size_t num_sets_;
-  std::vector<VoqSet> sets_;
-};
+  return std::move(best).Sorted();
+}
 
 }  // namespace
-
-std::vector<std::string> VoqOptions::Problems() const {
-  std::vector<std::string> problems;
-  if (num_sets < 1) {
-    problems.push_back("num_sets must be at least 1, is " + std::to_string(num_sets));
-  }
-  return problems;
-}
 
 double BoardDimensionErrorMm(const std::array<double, 4>& edge_lengths_m, const BoardSpec& board) {
   const std::array<double, 4> true_lengths_m = board.EdgeLengthsM();
@@ -125,29 +108,48 @@ double NormalConditionNumber(const Eigen::Vector3d& n0,
   return std::sqrt(squared_norm * squared_adjugate_norm) / determinant;
 }
 
+double NormalConditionNumber(const std::vector<Eigen::Vector3d>& normals) {
+  if (normals.size() == 3) return NormalConditionNumber(normals[0], normals[1], normals[2]);
+  // ||N||_F^2 and ||N^+||_F^2 are the sums of the eigenvalues of N^T N and of their inverses.
+  Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& normal : normals) gram += normal * normal.transpose();
+  const Eigen::Vector3d eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(gram, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(eigenvalues[0] > kSingularDeterminant)) return std::numeric_limits<double>::infinity();
+  return std::sqrt(eigenvalues.sum() * eigenvalues.cwiseInverse().sum());
+}
+
+VoqSet ScoreVoq(const std::vector<BoardSample>& samples,
+                const std::vector<int>& poses,
+                const BoardSpec& board) {
+  VoqSet set;
+  set.samples = poses;
+  std::vector<Eigen::Vector3d> normals_lidar, normals_camera;
+  double sum_mm = 0.0;
+  for (const int pose : poses) {
+    const BoardSample& sample = samples.at(static_cast<std::size_t>(pose));
+    normals_lidar.push_back(sample.lidar.pose.normal);
+    normals_camera.push_back(sample.camera.pose.normal);
+    sum_mm += BoardDimensionErrorMm(sample.lidar.edge_lengths_m, board);
+  }
+  set.kappa_lidar = NormalConditionNumber(normals_lidar);
+  set.kappa_camera = NormalConditionNumber(normals_camera);
+  set.board_error_mm = sum_mm / static_cast<double>(poses.size());
+  set.voq = std::max(set.kappa_lidar, set.kappa_camera) + set.board_error_mm;
+  return set;
+}
+
 std::vector<VoqSet> SelectByVoq(const std::vector<BoardSample>& samples,
                                 const BoardSpec& board,
-                                const VoqOptions& options) {
-  const std::vector<std::string> problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("VoqOptions: " + problems.front());
-
-  // Branch and bound over all combinations: kappa is never below 3 and e_dim ascends, so once
-  // 3 + e_be exceeds the worst set kept, so do all later sets of the same loop.
-  const std::vector<RankedSample> ranked = RankByDimensionError(samples, board);
-  const auto error_mm = [&ranked](std::size_t i) { return ranked[i].dimension_error_mm; };
-  BestSets best(options.num_sets);
-  for (std::size_t i = 0; i + 2 < ranked.size(); ++i) {
-    if (!best.CanBeat((error_mm(i) + error_mm(i + 1) + error_mm(i + 2)) / 3.0)) break;
-    for (std::size_t j = i + 1; j + 1 < ranked.size(); ++j) {
-      if (!best.CanBeat((error_mm(i) + error_mm(j) + error_mm(j + 1)) / 3.0)) break;
-      for (std::size_t k = j + 1; k < ranked.size(); ++k) {
-        if (!best.CanBeat((error_mm(i) + error_mm(j) + error_mm(k)) / 3.0)) break;
-        const VoqSet set = MakeSet(samples, {ranked[i], ranked[j], ranked[k]});
-        if (std::isfinite(set.voq)) best.Offer(set);
-      }
-    }
+                                int num_sets) {
+  if (num_sets < 1) {
+    throw std::invalid_argument("num_sets must be at least 1, is " + std::to_string(num_sets));
   }
-  return std::move(best).Sorted();
+  std::vector<VoqSet> sets;
+  for (const ScoredTriple& best : LowestVoq(RankByDimensionError(samples, board), num_sets)) {
+    sets.push_back(ScoreVoq(samples, {best.poses.begin(), best.poses.end()}, board));
+  }
+  return sets;
 }
 
 }  // namespace voqcal

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "core/board/board_sample.hpp"
@@ -9,25 +8,18 @@
 
 namespace voqcal {
 
-/// One set of three poses and its Variability of Quality (Tsai et al. 2021, arXiv:2103.12287, whose
+/// A set of poses and its Variability of Quality (Tsai et al. 2021, arXiv:2103.12287, whose
 /// equations are numbered here in their order: 2 kappa, 3 kappa_LC, 4 e_dim, 5 e_be, 6 VOQ).
 struct VoqSet {
-  std::array<int, 3> samples{};  ///< Indices into the samples, ascending.
-  double kappa_lidar = 0.0;      ///< ||N^-1||_F ||N||_F of the three lidar normals; at least 3.
-  double kappa_camera = 0.0;
+  std::vector<int> samples;  ///< Indices into the samples, ascending: three, as published, or more.
+  double kappa_lidar = 0.0;  ///< Condition number of the lidar's normals; at least 3.
+  double kappa_camera = 0.0;    ///< Of the camera's.
   double board_error_mm = 0.0;  ///< e_be: mean over the poses of e_dim.
   double voq = 0.0;             ///< max(kappa_lidar, kappa_camera) + e_be, as published.
 };
 
-struct VoqOptions {
-  int num_sets = 50;  ///< How many sets of lowest VOQ are kept.
-
-  /// One line for each broken constraint, with its value; empty if the options are usable.
-  std::vector<std::string> Problems() const;
-};
-
-/// e_dim, Eq. 4: sum over the 4 edges of |measured - true|,
-/// millimetres.
+/// e_dim, Eq. 4: sum over the 4 edges of |measured - true|, millimetres; NaN if one was not
+/// measured.
 double BoardDimensionErrorMm(const std::array<double, 4>& edge_lengths_m, const BoardSpec& board);
 
 /// Eq. 2, kappa(N) = ||N^-1||_F ||N||_F of the matrix whose rows are the unit normals; infinite if
@@ -37,11 +29,23 @@ double NormalConditionNumber(const Eigen::Vector3d& n0,
                              const Eigen::Vector3d& n1,
                              const Eigen::Vector3d& n2);
 
+/// The same of any number of normals, with the pseudo-inverse: equal to Eq. 2 for three.
+double NormalConditionNumber(const std::vector<Eigen::Vector3d>& normals);
+
+/// The VOQ of the set of these poses (indices, ascending).
+VoqSet ScoreVoq(const std::vector<BoardSample>& samples,
+                const std::vector<int>& poses,
+                const BoardSpec& board);
+
 /// The sets of lowest VOQ over all combinations of three, best first; ties by index. Fewer than
-/// `num_sets` if there are fewer combinations; empty for fewer than three samples.
-/// Sets with an infinite condition number are left out.
+/// `num_sets` if there are fewer combinations; empty for fewer than three samples. Sets whose VOQ
+/// is not finite are left out.
+///
+/// Exact for any number of samples, and fast: kappa is never below 3, so 3 + e_be bounds the VOQ,
+/// and most combinations need no look.
+/// @throws std::invalid_argument if `num_sets` is below 1.
 std::vector<VoqSet> SelectByVoq(const std::vector<BoardSample>& samples,
                                 const BoardSpec& board,
-                                const VoqOptions& options);
+                                int num_sets);
 
 }  // namespace voqcal

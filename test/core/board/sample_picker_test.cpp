@@ -1,9 +1,12 @@
 #include "core/board/sample_picker.hpp"
 
+#include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "core/board/average_sightings.hpp"
 
 namespace voqcal {
 namespace {
@@ -164,6 +167,85 @@ TEST(SamplePicker, RejectsAMovingBoardAndTakesItOnRequest) {
   EXPECT_EQ(std::count(outcomes.begin(), outcomes.end(), "accepted"), 1);
 }
 
+// A second board that rests at 5 m, as the candidate that is ranked first.
+LidarSighting BehindASecondBoard(LidarSighting sighting) {
+  sighting.runners_up = {*sighting.board};
+  sighting.board->pose = PoseFromTransform(PoseAt(5.0), Board());
+  return sighting;
+}
+
+LidarSighting BeforeASecondBoard(const LidarSighting& sighting) {
+  LidarSighting turned = BehindASecondBoard(sighting);
+  std::swap(*turned.board, turned.runners_up[0]);
+  return turned;
+}
+
+TEST(SamplePicker, KeepsBothOfTwoRestingCandidatesWhoseRanksChange) {
+  SamplePicker picker(Board(), {});
+  std::vector<PickerDecision> decisions;
+  for (int frame = 0; frame < 3; ++frame) {
+    LidarSighting sighting = BeforeASecondBoard(Lidar(frame, 0.5));
+    sighting.board->log_likelihood = -1.0;
+    sighting.runners_up[0].log_likelihood = -2.0;
+    if (frame == 1) {  // once it is the other way round
+      sighting = BehindASecondBoard(Lidar(frame, 0.5));
+      sighting.board->log_likelihood = -1.0;
+      sighting.runners_up[0].log_likelihood = -1.2;
+    }
+    Append(picker.Add(sighting), &decisions);
+    Append(picker.Add(Camera(frame, 0.5)), &decisions);
+  }
+  Append(picker.Flush(), &decisions);
+  ASSERT_EQ(decisions.size(), 3U);
+  ASSERT_TRUE(decisions[2].accepted);
+  const BoardSample& sample = *decisions[2].accepted;
+  ASSERT_EQ(sample.runners_up.size(), 1U);
+  EXPECT_NEAR(sample.lidar.pose.centre_m.x(), 0.5, 1e-12);
+  EXPECT_NEAR(sample.runners_up[0].pose.centre_m.x(), 5.0, 1e-12);
+  EXPECT_NEAR(sample.lidar.log_likelihood, (-1.0 - 1.2 - 1.0) / 3, 1e-12);
+}
+
+TEST(SamplePicker, DropsACandidateThatIsNotInEveryFrame) {
+  SamplePicker picker(Board(), {});
+  std::vector<PickerDecision> decisions;
+  for (int frame = 0; frame < 3; ++frame) {
+    const LidarSighting sighting = Lidar(frame, 0.5);
+    Append(picker.Add(frame == 2 ? BeforeASecondBoard(sighting) : sighting), &decisions);
+    Append(picker.Add(Camera(frame, 0.5)), &decisions);
+  }
+  Append(picker.Flush(), &decisions);
+  ASSERT_TRUE(decisions.at(2).accepted);
+  EXPECT_TRUE(decisions[2].accepted->runners_up.empty());
+}
+
+TEST(SamplePicker, PassesOverACandidateOfTheWrongSize) {
+  SamplePickerOptions options;
+  options.num_still_frames = 1;
+  SamplePicker picker(Board(), options);
+  LidarSighting sighting = BehindASecondBoard(Lidar(0, 0.5));
+  sighting.board->edge_lengths_m[1] = 1.0;
+  std::vector<PickerDecision> decisions = picker.Add(sighting);
+  Append(picker.Add(Camera(0, 0.5)), &decisions);
+  Append(picker.Flush(), &decisions);
+  ASSERT_TRUE(decisions.at(0).accepted);
+  EXPECT_NEAR(decisions[0].accepted->lidar.pose.centre_m.x(), 0.5, 1e-12);
+  EXPECT_TRUE(decisions[0].accepted->runners_up.empty());
+}
+
+TEST(SamplePicker, KeepsNoMoreCandidatesThanAsked) {
+  SamplePickerOptions options;
+  options.num_still_frames = 1;
+  options.max_candidates = 2;
+  SamplePicker picker(Board(), options);
+  LidarSighting sighting = BeforeASecondBoard(Lidar(0, 0.5));
+  sighting.runners_up.push_back(sighting.runners_up[0]);
+  std::vector<PickerDecision> decisions = picker.Add(sighting);
+  Append(picker.Add(Camera(0, 0.5)), &decisions);
+  Append(picker.Flush(), &decisions);
+  ASSERT_TRUE(decisions.at(0).accepted);
+  EXPECT_EQ(decisions[0].accepted->runners_up.size(), 1U);
+}
+
 TEST(SamplePicker, KnowsTheSamplesOfARestartedSession) {
   SamplePickerOptions options;
   options.num_still_frames = 1;
@@ -196,7 +278,7 @@ TEST(SamplePicker, NamesABadOption) {
   EXPECT_THROW(SamplePicker(Board(), options), std::invalid_argument);
 }
 
-TEST(AverageSightings, TurnsFramesOfTheOtherHalfTurnBeforeAveraging) {
+TEST(MeanBoard, TurnsFramesOfTheOtherHalfTurnBeforeAveraging) {
   LidarBoard lidar = *Lidar(0, 0.5).board;
   lidar.edge_lengths_m = {0.60, 0.80, 0.62, 0.82};
   LidarBoard lidar_turned = lidar;
@@ -206,15 +288,16 @@ TEST(AverageSightings, TurnsFramesOfTheOtherHalfTurnBeforeAveraging) {
   CameraBoard camera_turned = camera;
   camera_turned.pose = TurnedByHalf(camera.pose);
   std::reverse(camera_turned.corners_px.begin(), camera_turned.corners_px.end());
-  const BoardSample sample =
-      AverageSightings({lidar, lidar_turned}, {camera, camera_turned}, 0, Board());
+  const LidarBoard lidar_mean = MeanLidarBoard({lidar, lidar_turned}, Board());
+  const CameraBoard camera_mean = MeanCameraBoard({camera, camera_turned}, Board());
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(sample.lidar.edge_lengths_m[i], lidar.edge_lengths_m[i], 1e-12);
-    EXPECT_LT((sample.lidar.pose.corners_m[i] - lidar.pose.corners_m[i]).norm(), 1e-12);
-    EXPECT_LT((sample.camera.pose.corners_m[i] - camera.pose.corners_m[i]).norm(), 1e-12);
+    EXPECT_NEAR(lidar_mean.edge_lengths_m[i], lidar.edge_lengths_m[i], 1e-12);
+    EXPECT_LT((lidar_mean.pose.corners_m[i] - lidar.pose.corners_m[i]).norm(), 1e-12);
+    EXPECT_LT((camera_mean.pose.corners_m[i] - camera.pose.corners_m[i]).norm(), 1e-12);
   }
-  EXPECT_LT((sample.camera.corners_px[0] - camera.corners_px[0]).norm(), 1e-12);
-  EXPECT_THROW(AverageSightings({}, {}, 0, Board()), std::invalid_argument);
+  EXPECT_LT((camera_mean.corners_px[0] - camera.corners_px[0]).norm(), 1e-12);
+  EXPECT_THROW(MeanLidarBoard({}, Board()), std::invalid_argument);
+  EXPECT_THROW(MeanCameraBoard({}, Board()), std::invalid_argument);
 }
 
 }  // namespace

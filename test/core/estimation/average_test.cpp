@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -62,6 +63,16 @@ TEST(AverageExtrinsics, DropsWhatIsTwoDeviationsOffInAnyParameter) {
     const AveragedExtrinsic average = AverageExtrinsics(sets, {});
     EXPECT_EQ(average.num_kept, 9);
     EXPECT_FALSE(average.is_kept[9]);
+    EXPECT_EQ(average.reasons[0], "");
+    constexpr const char* kNames[6] = {"rotation x",
+                                       "rotation y",
+                                       "rotation z",
+                                       "translation x",
+                                       "translation y",
+                                       "translation z"};
+    EXPECT_EQ(
+        average.reasons[9],
+        std::string(kNames[parameter]) + " is 2.85 standard deviations from the mean of all sets");
     EXPECT_THAT(average.T_camera_lidar, test::IsNear(sets[0].T_camera_lidar, 1e-12, 1e-12));
     EXPECT_EQ(AverageExtrinsics(sets, {2.9}).num_kept, 10);
   }
@@ -83,6 +94,7 @@ TEST(AverageExtrinsics, LeavesOutUnusableSets) {
   const AveragedExtrinsic average =
       AverageExtrinsics({Usable(test::TestExtrinsic()), degenerate}, {});
   EXPECT_THAT(average.is_kept, ElementsAre(true, false));
+  EXPECT_THAT(average.reasons, ElementsAre("", "degenerate"));
   EXPECT_THAT(average.T_camera_lidar, test::IsNear(test::TestExtrinsic(), 1e-12, 1e-12));
   EXPECT_TRUE(std::isnan(average.spread[0])) << "one set shows no spread";
 }

@@ -79,6 +79,83 @@ TEST(FindConsistent, TakesNanForWrong) {
   EXPECT_THAT(found.consistent, ElementsAre(0, 1, 4, 5, 6, 7, 8, 9));
 }
 
+TEST(FindConsistent, FindsOutliersAmongManySamples) {
+  for (const int num_outliers : {20, 40, 60}) {
+    const Consistency found = FindConsistent(Scene(200, num_outliers), {});
+    ASSERT_EQ(found.inconsistent.size(), static_cast<std::size_t>(num_outliers));
+    for (int i = 0; i < num_outliers; ++i) {
+      EXPECT_EQ(found.inconsistent[static_cast<std::size_t>(i)].sample, i);
+    }
+  }
+}
+
+TEST(FindConsistent, KeepsSamplesOfALidarWithACommonRangeOffset) {
+  // 20 mm along every ray: two centres at 70 degrees, more than this view has, differ by at most 2
+  // * 20 mm * sin(35 deg) = 23 mm of the 60 mm that are allowed.
+  for (const double offset_m : {0.02, -0.02}) {
+    auto samples = Scene(40, 4);
+    for (BoardSample& sample : samples) {
+      const Eigen::Vector3d ray = sample.lidar.pose.centre_m.normalized();
+      sample.lidar.pose.centre_m += offset_m * ray;
+    }
+    const Consistency found = FindConsistent(samples, {});
+    EXPECT_EQ(found.consistent.size(), 36u);
+    ASSERT_EQ(found.inconsistent.size(), 4u);
+    EXPECT_EQ(found.inconsistent[3].sample, 3);
+  }
+}
+
+TEST(FindConsistent, TakesTheRunnerUpThatFits) {
+  // A second board stands still beside: in a third of the sweeps it is ranked first, in another
+  // third second, in the rest it is not seen.
+  auto samples = Scene(30, 0);
+  LidarBoard other = samples[0].lidar;
+  other.pose.centre_m += Eigen::Vector3d(0.5, 1.0, 0.0);
+  for (std::size_t i = 0; i < 20; ++i) samples[i].runners_up = {other};
+  std::vector<BoardSample> confused = samples;
+  for (std::size_t i = 0; i < 10; ++i) TakeCandidate(1, &confused[i]);
+
+  const Consistency found = FindConsistent(confused, {});
+  EXPECT_EQ(found.consistent.size(), 30u);
+  ASSERT_EQ(found.chosen.size(), 10u);
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_EQ(found.chosen[i].sample, static_cast<int>(i));
+    EXPECT_EQ(found.chosen[i].candidate, 1);
+    EXPECT_THAT(found.chosen[i].reason, HasSubstr("of 29 consistent samples"));
+  }
+  const std::vector<BoardSample> mended = ConsistentSamples(confused, found);
+  ASSERT_EQ(mended.size(), samples.size());
+  for (std::size_t i = 0; i < mended.size(); ++i) {
+    EXPECT_EQ(mended[i].lidar.pose.centre_m, samples[i].lidar.pose.centre_m);
+  }
+}
+
+TEST(FindConsistent, PrefersTheLikeliestCandidateWhereBothFit) {
+  auto samples = Scene(10, 0);
+  for (BoardSample& sample : samples) {
+    sample.runners_up = {sample.lidar};
+    sample.runners_up[0].pose.centre_m.x() += 0.005;
+  }
+  const Consistency found = FindConsistent(samples, {});
+  EXPECT_EQ(found.consistent.size(), 10u);
+  EXPECT_THAT(found.chosen, IsEmpty());
+}
+
+TEST(FindConsistent, DropsASampleOfWhichNoCandidateFits) {
+  auto samples = Scene(12, 2);
+  samples[0].runners_up = {samples[5].lidar, samples[6].lidar};
+  const Consistency found = FindConsistent(samples, {});
+  ASSERT_EQ(found.inconsistent.size(), 2u);
+  EXPECT_EQ(found.inconsistent[0].sample, 0);
+  EXPECT_THAT(found.chosen, IsEmpty());
+}
+
+TEST(TakeCandidate, RefusesOneThatIsNotThere) {
+  auto samples = Scene(1, 0);
+  EXPECT_THROW(TakeCandidate(1, &samples[0]), std::out_of_range);
+  EXPECT_THROW(TakeCandidate(0, &samples[0]), std::out_of_range);
+}
+
 TEST(FindConsistent, CannotJudgeFewerThanThree) {
   EXPECT_THAT(FindConsistent(Scene(2, 1), {}).consistent, ElementsAre(0, 1));
   EXPECT_THAT(FindConsistent({}, {}).consistent, IsEmpty());

@@ -115,6 +115,10 @@ void ExpectSame(const BoardSample& a, const BoardSample& b) {
   EXPECT_EQ(a.num_frames, b.num_frames);
   ExpectSame(a.lidar, b.lidar);
   ExpectSame(a.camera, b.camera);
+  ASSERT_EQ(a.runners_up.size(), b.runners_up.size());
+  for (std::size_t i = 0; i < a.runners_up.size(); ++i) {
+    ExpectSame(a.runners_up[i], b.runners_up[i]);
+  }
 }
 
 /// The message as a reader on the other side of LCM has it.
@@ -128,7 +132,8 @@ Message OverTheWire(const Message& message) {
 }
 
 TEST(SamplesMessage, ComesBackExactly) {
-  const std::vector<BoardSample> samples = {Sample(1), Sample(7)};
+  std::vector<BoardSample> samples = {Sample(1), Sample(7)};
+  samples[1].runners_up = {samples[0].lidar, samples[1].lidar};
   const samples_t message = OverTheWire(ToMessage(samples, 12, true, "abc"));
   EXPECT_EQ(message.revision, 12);
   EXPECT_TRUE(message.is_finished);
@@ -145,14 +150,16 @@ TEST(SamplesMessage, MayBeEmpty) {
   EXPECT_TRUE(FromMessage(message).empty());
 }
 
-TEST(LidarBoardMessage, GivesTheBestCandidate) {
+TEST(LidarBoardMessage, GivesTheCandidatesInTheirOrder) {
   Numbers numbers;
   const std::vector<LidarBoard> candidates = {Lidar(&numbers), Lidar(&numbers)};
   const LidarSighting sighting =
       SightingFromMessage(OverTheWire(LidarBoardMessage(candidates, "", 12, 3)));
   EXPECT_EQ(sighting.utime, 12);
   ASSERT_TRUE(sighting.board);
-  ExpectSame(*sighting.board, candidates.front());
+  ExpectSame(*sighting.board, candidates[0]);
+  ASSERT_EQ(sighting.runners_up.size(), 1U);
+  ExpectSame(sighting.runners_up[0], candidates[1]);
 }
 
 TEST(LidarBoardMessage, GivesTheReasonForNone) {

@@ -87,6 +87,7 @@ TEST(AveragedMessage, ComesBack) {
   average.T_camera_lidar = Transform(1.2);
   average.spread << 0.1, 0.2, 0.3, 0.4, 0.5, 1.0 / 3.0;
   average.is_kept = {true, false};
+  average.reasons = {"", "not converged"};
   average.num_kept = 1;
   SetExtrinsic kept;
   kept.T_camera_lidar = Transform(1.1);
@@ -105,11 +106,12 @@ TEST(AveragedMessage, ComesBack) {
   const AveragedExtrinsic back = FromMessage(message);
   EXPECT_EQ(back.spread, average.spread);
   EXPECT_EQ(back.is_kept, average.is_kept);
+  EXPECT_EQ(back.reasons, average.reasons);
   EXPECT_EQ(back.num_kept, average.num_kept);
 }
 
 TEST(SetExtrinsicMessage, IsRefusedIfItsStatusIsUnknown) {
-  set_extrinsic_t message = ToMessage(SetExtrinsic{}, ToMessage(Set(), kIds), true);
+  set_extrinsic_t message = ToMessage(SetExtrinsic{}, ToMessage(Set(), kIds), true, "");
   message.status = "splendid";
   EXPECT_THROW(FromMessage(message), std::runtime_error);
 }

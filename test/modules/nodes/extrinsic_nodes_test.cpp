@@ -76,6 +76,38 @@ TEST_F(ExtrinsicNodesTest, LeaveTheSelectorsOutlierOutAndPassItsNameOn) {
               test::IsNear(test::TestExtrinsic(), kExactRad, kExactM));
 }
 
+TEST_F(ExtrinsicNodesTest, UseTheCandidateThatTheSelectorChose) {
+  std::vector<BoardSample> samples = ExactSamples(9);
+  LidarBoard other = samples[2].lidar;
+  other.pose = samples[5].lidar.pose;
+  samples[2].runners_up = {samples[2].lidar};
+  samples[2].lidar = other;
+  SendSamples(samples, 9);
+  StepAll();
+  ASSERT_THAT(refined(), SizeIs(1));
+  ASSERT_EQ(averaged()[0].num_chosen, 1);
+  EXPECT_EQ(averaged()[0].chosen[0].sample_id, 3);
+  EXPECT_THAT(refined()[0].sample_ids, SizeIs(9));
+  EXPECT_THAT(FromMessage(averaged()[0].T_camera_lidar),
+              test::IsNear(test::TestExtrinsic(), kExactRad, kExactM));
+  EXPECT_THAT(FromMessage(refined()[0].T_camera_lidar),
+              test::IsNear(test::TestExtrinsic(), kExactRad, kExactM));
+}
+
+TEST_F(ExtrinsicNodesTest, SayWhyASetWasDropped) {
+  SendSamples(test::NoisySamples(12), 12);
+  StepAll();
+  ASSERT_THAT(averaged(), SizeIs(1));
+  int num_dropped = 0;
+  for (const set_extrinsic_t& set : averaged()[0].sets) {
+    EXPECT_EQ(set.is_kept != 0, set.reason.empty());
+    if (set.is_kept != 0) continue;
+    ++num_dropped;
+    EXPECT_THAT(set.reason, HasSubstr("standard deviations from the mean of all sets"));
+  }
+  EXPECT_GT(num_dropped, 0);
+}
+
 TEST_F(ExtrinsicNodesTest, PassTheProblemOfTooFewSamplesOn) {
   SendSamples(ExactSamples(2), 2);
   StepAll();

@@ -51,6 +51,42 @@ TEST_F(VoqSelectorNodeTest, LeavesOutASampleThatDisagreesAndNamesIt) {
   }
 }
 
+TEST_F(VoqSelectorNodeTest, TakesTheRunnerUpThatFitsAndSaysSo) {
+  std::vector<BoardSample> samples = test::NoisySamples(10);
+  LidarBoard other = samples[3].lidar;
+  other.pose.centre_m += Eigen::Vector3d(0.5, 1.0, 0.0);
+  samples[3].runners_up = {samples[3].lidar};
+  samples[3].lidar = other;
+  SendSamples(samples, 1);
+  Step(&node_);
+  ASSERT_THAT(sent(), SizeIs(1));
+  EXPECT_THAT(sent()[0].inconsistent_ids, IsEmpty());
+  ASSERT_EQ(sent()[0].num_chosen, 1);
+  EXPECT_EQ(sent()[0].chosen[0].sample_id, 4);
+  EXPECT_EQ(sent()[0].chosen[0].candidate, 1);
+  EXPECT_THAT(sent()[0].chosen[0].reason, HasSubstr("disagrees with"));
+  EXPECT_EQ(sent()[0].num_combinations, 120);
+}
+
+TEST_F(VoqSelectorNodeTest, ListsTheLowestVoqWhateverTheCriterion) {
+  Rig rig = rig_;
+  rig.voq_selector.criterion = SelectionCriterion::kAllPoses;
+  VoqSelectorNode all_poses(rig, &bus_);
+  SendSamples(test::NoisySamples(10), 1);
+  Step(&node_);
+  Step(&all_poses);
+  ASSERT_THAT(sent(), SizeIs(2));
+  EXPECT_EQ(sent()[0].criterion, "voq");
+  EXPECT_EQ(sent()[1].criterion, "all_poses");
+  ASSERT_EQ(sent()[1].num_sets, 1);
+  EXPECT_THAT(sent()[1].sets[0].sample_ids, SizeIs(10));
+  ASSERT_EQ(sent()[1].num_lowest_voq, 50);
+  for (std::size_t i = 0; i < 50; ++i) {
+    EXPECT_EQ(sent()[1].lowest_voq[i].sample_ids, sent()[0].sets[i].sample_ids);
+    EXPECT_EQ(sent()[1].lowest_voq[i].voq, sent()[0].sets[i].voq);
+  }
+}
+
 TEST_F(VoqSelectorNodeTest, SaysThatSamplesAreTooFew) {
   SendSamples({}, 0);
   Step(&node_);

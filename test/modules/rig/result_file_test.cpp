@@ -30,6 +30,7 @@ CalibrationResult SomeResult() {
   result.trials = {{RefineMethod::kLikelihood, "no points", {}}};
   result.used_ids = {1, 3, 4};
   result.rejected = {{2, "disagrees with \"all\" others:\n26 deg \\ 80 mm"}};
+  result.exchanged = {{4, 1, "disagrees with 3 of 3"}};
   result.made_from = {"aa", "bb", "0.1.0"};
   return result;
 }
@@ -57,6 +58,9 @@ TEST(ToYaml, IsReadBackExactly) {
   EXPECT_TRUE(std::isnan(yaml["scores"]["in_sample"]["normal_deg"]["max"].as<double>()));
   EXPECT_EQ(yaml["samples"]["used"].as<std::vector<int>>(), (std::vector<int>{1, 3, 4}));
   EXPECT_EQ(yaml["samples"]["rejected"][0]["id"].as<int>(), 2);
+  EXPECT_EQ(yaml["samples"]["exchanged"][0]["id"].as<int>(), 4);
+  EXPECT_EQ(yaml["samples"]["exchanged"][0]["candidate"].as<int>(), 1);
+  EXPECT_EQ(yaml["samples"]["exchanged"][0]["reason"].as<std::string>(), "disagrees with 3 of 3");
   EXPECT_EQ(yaml["samples"]["rejected"][0]["reason"].as<std::string>(),
             "disagrees with \"all\" others: 26 deg \\ 80 mm");
   EXPECT_EQ(yaml["made_from"]["rig_sha256"].as<std::string>(), "bb");

@@ -51,7 +51,7 @@ TEST(LoadRig, NeedsOnlyNameBoardAndCamera) {
   EXPECT_EQ(rig.camera.fy_px, 501);
   EXPECT_EQ(rig.camera.distortion, (std::array<double, 8>{0.1, 0.2, 0, 0, 0.3, 0, 0, 0}));
   EXPECT_EQ(rig.channels.calib_samples, "CALIB_SAMPLES");
-  EXPECT_EQ(rig.voq_selector.num_sets, VoqOptions().num_sets);
+  EXPECT_EQ(rig.voq_selector.num_sets, SelectionOptions().num_sets);
   // Exactly: a default in radians is not sent through degrees and back.
   EXPECT_EQ(rig.consistency.max_angle_rad, ConsistencyOptions().max_angle_rad);
 }

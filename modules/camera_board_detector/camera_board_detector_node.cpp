@@ -19,14 +19,18 @@ struct Miss {
   std::string detail;
 };
 
+std::string SizeText(int width_px, int height_px) {
+  return std::to_string(width_px) + " x " + std::to_string(height_px);
+}
+
 // An image of another size than the camera's is not decoded: every pose would be wrong, and a
 // damaged header must not ask for gigabytes.
 Expected<cv::Mat, Miss> PictureOf(const image_t& message, const CameraModel& camera) {
   if (message.width != camera.width_px || message.height != camera.height_px) {
-    return Miss{"wrong image size",
-                std::to_string(message.width) + " x " + std::to_string(message.height) +
-                    " px, the camera's are " + std::to_string(camera.width_px) + " x " +
-                    std::to_string(camera.height_px)};
+    // The sizes are part of the reason: who sees only the counts needs no more to mend it.
+    return Miss{"image of " + SizeText(message.width, message.height) + " px, the camera's are " +
+                    SizeText(camera.width_px, camera.height_px),
+                ""};
   }
   try {
     return FromMessage(message);

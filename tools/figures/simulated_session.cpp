@@ -26,9 +26,12 @@ std::vector<BoardSample> SimulateSession(const Rig& rig, const SimulationOptions
     const auto camera =
         DetectCameraBoard(world.Image(time_s), rig.camera, rig.board, rig.camera_board_detector);
     if (!lidar || !camera) continue;
-    samples.push_back(AverageSightings(
-        {lidar->front()}, {*camera}, kSyntheticEpochUtime + std::llround(1e6 * time_s), rig.board));
-    samples.back().id = stop + 1;
+    BoardSample sample;
+    sample.id = stop + 1;
+    sample.utime = kSyntheticEpochUtime + std::llround(1e6 * time_s);
+    sample.lidar = lidar->front();
+    sample.camera = *camera;
+    samples.push_back(sample);
   }
   std::vector<BoardSample> consistent;
   for (const int i : FindConsistent(samples, rig.consistency).consistent) {

@@ -10,7 +10,7 @@
 #include "common/scratch_folder.hpp"
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/estimation/consistency.hpp"
-#include "core/selection/voq.hpp"
+#include "core/selection/select_sets.hpp"
 #include "core/simulation/keyed_noise.hpp"
 #include "figures/figures.hpp"
 
@@ -27,7 +27,7 @@ struct SubsetsArgs {
 
 AveragedExtrinsic Average(const std::vector<BoardSample>& samples, const Rig& rig) {
   std::vector<SetExtrinsic> extrinsics;
-  for (const VoqSet& set : SelectByVoq(samples, rig.board, rig.voq_selector)) {
+  for (const VoqSet& set : SelectSets(samples, rig.board, rig.camera, rig.voq_selector)) {
     std::vector<const BoardSample*> members;
     for (const int i : set.samples) members.push_back(&samples[static_cast<std::size_t>(i)]);
     extrinsics.push_back(EstimateSetExtrinsic(members, rig.camera, rig.extrinsic_estimator));

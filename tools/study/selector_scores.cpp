@@ -45,8 +45,10 @@ SelectorScore CrossValidate(const std::vector<BoardSample>& samples,
       std::vector<BoardSample> others = samples;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(held_out));
       const AveragedExtrinsic average = AverageOfChosen(others, rig, selection);
-      const RefinedExtrinsic refined = RefineExtrinsic(
-          SamplesWithout(others, {}), rig.camera, average.T_camera_lidar, rig.extrinsic_refiner);
+      const RefinedExtrinsic refined = RefineExtrinsic(SamplesWithout(others, {}),
+                                                       rig.camera,
+                                                       average.T_camera_lidar,
+                                                       rig.extrinsic_refiner.reprojection);
       const auto error_mm = [&](bool is_usable, const Eigen::Isometry3d& T_camera_lidar) {
         return is_usable ? ScorePose(samples[held_out], rig.camera, T_camera_lidar).centre_mm
                          : std::nan("");

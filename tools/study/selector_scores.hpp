@@ -15,7 +15,7 @@ namespace voqcal {
 struct SelectorScore {
   std::string name;
   Spread average_mm;  ///< Centre error of each pose, by the average of sets chosen without it.
-  Spread final_mm;    ///< The same, by the extrinsic refined from that average without it.
+  Spread final_mm;    ///< The same, by the extrinsic refined from it (by reprojection).
 };
 
 /// Leave-one-out over the samples: for each, sets are chosen among the others, calibrated, averaged

@@ -29,8 +29,9 @@ struct SimulationOptions {
   double second_board_scale = 0.0;  ///< Size of a second board, of the true one's; 0: none.
   // Lidar.
   ScanOptions scan;
-  double range_noise_m = 0.01;   ///< 1 sigma of one return.
-  double ring_bias_m = 0.008;    ///< 1 sigma of the constant offset of each ring, where there are rings.
+  double range_noise_m = 0.01;  ///< 1 sigma of one return.
+  double ring_bias_m =
+      0.008;  ///< 1 sigma of the constant offset of each ring, where there are rings.
   double common_bias_m = 0.0;    ///< Constant offset of every range.
   double dark_bias_m = 0.0075;   ///< Dark squares read longer by this, bright ones shorter.
   double intensity_noise = 1.0;  ///< 1 sigma of one return's intensity; a white surface reads 100.

@@ -32,9 +32,13 @@ class ImportRos : public ::testing::TestWithParam<const char*> {
     ASSERT_EQ(outcome.status, 0) << args[0] << ": " << outcome.err;
   }
 
+  /// All of extrinsic.yaml but the hash of the samples: they hold the sweeps, whose fields are laid
+  /// out as the recording has them.
   std::string ResultOf(const std::string& log) const {
     MustRun({test::Program("calibrate"), "--rig", rig_, "--log", log, "--out", log + ".out"});
-    return ReadWholeFile(log + ".out/extrinsic.yaml");
+    const std::string text = ReadWholeFile(log + ".out/extrinsic.yaml");
+    const std::size_t hash = text.find("log_sha256:");
+    return text.substr(0, hash) + text.substr(text.find('\n', hash));
   }
 
   test::TemporaryFolder folder_;

@@ -50,8 +50,11 @@ const sample = {
     num_points: 0, points: [], num_rings: 0, rings: [],
   }),
   camera: zero({
-    utime: UTIME, seq: 0, frame: "camera", miss: "", reprojection_rms_px: 0, num_corners: 0, corners_px: [],
+    utime: UTIME, seq: 0, frame: "camera", miss: "", detail: "", num_warnings: 0, warnings: [],
+    reprojection_rms_px: 0, num_corners: 0, corners_px: [],
   }),
+  num_runners_up: 0,
+  runners_up: [],
 };
 const sweep = {
   utime: UTIME, seq: 0, frame_id: "lidar", height: 1, width: 1, nfields: 4,

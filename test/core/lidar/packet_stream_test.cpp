@@ -1,0 +1,145 @@
+#include "core/lidar/packet_stream.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "support/vlp16_packet.hpp"
+
+namespace voqcal {
+namespace {
+
+using test::Vlp16PacketWriter;
+
+constexpr std::int64_t kHostUtime = 1700000000000000;
+constexpr int kStep = 40;  // centidegrees a block: 75 packets a turn
+constexpr double kPacketUs = 12 * 110.592;
+
+// Packets of a lidar that turns steadily, each beam with an echo.
+std::vector<Vlp16PacketWriter> Turns(int num_packets, std::uint32_t first_us = 1000) {
+  std::vector<Vlp16PacketWriter> packets;
+  for (int i = 0; i < num_packets; ++i) {
+    const auto time_us = static_cast<std::uint32_t>((first_us + std::llround(i * kPacketUs)) %
+                                                    std::int64_t{kVlp16ClockUs});
+    packets.emplace_back(i * 12 * kStep % 36000, kStep, time_us);
+    packets.back().SetAllEchoes(1500, 50);
+  }
+  return packets;
+}
+
+std::vector<TimedSweep> SweepsOf(const std::vector<Vlp16PacketWriter>& packets,
+                                 LidarPacketStream* stream) {
+  std::vector<TimedSweep> sweeps;
+  const auto append = [&sweeps](std::vector<TimedSweep> more) {
+    for (TimedSweep& sweep : more) sweeps.push_back(std::move(sweep));
+  };
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    append(stream->Add(packets[i].Bytes(),
+                       kHostUtime + std::llround(static_cast<double>(i) * kPacketUs)));
+  }
+  append(stream->Finish());
+  return sweeps;
+}
+
+LidarPacketOptions SplitAt(double split_deg) {
+  LidarPacketOptions options;
+  options.split_azimuth_rad = split_deg * M_PI / 180.0;
+  return options;
+}
+
+TEST(LidarPacketStream, EndsSweepsAtAnyAzimuth) {
+  for (const double split_deg : {0.0, 0.1, 123.4, 359.9}) {
+    LidarPacketStream stream(SplitAt(split_deg));
+    const auto sweeps = SweepsOf(Turns(75 * 3), &stream);
+    ASSERT_EQ(sweeps.size(), split_deg == 0.0 ? 3U : 4U);
+    for (std::size_t i = 1; i + 1 < sweeps.size(); ++i) {
+      EXPECT_EQ(sweeps[i].returns.size(), 75U * 12 * 32) << split_deg;
+      // Lasers lie 0.008 degrees apart.
+      EXPECT_NEAR(sweeps[i].returns[0].azimuth_rad * 180 / M_PI, split_deg, 0.01);
+      // utime is in whole microseconds, and the packets' own times are rounded to them.
+      EXPECT_GE(sweeps[i].returns[0].point.time_s, 0.0F);
+      EXPECT_LT(sweeps[i].returns[0].point.time_s, 1e-6F);
+      // A turn after the first, but for the pause of 20.7 us after a firing's last laser.
+      EXPECT_NEAR(sweeps[i].returns.back().point.time_s, 75 * kPacketUs * 1e-6, 23e-6);
+      EXPECT_NEAR(static_cast<double>(sweeps[i].utime - sweeps[i - 1].utime),
+                  i == 1 ? split_deg / 360 * 75 * kPacketUs + (split_deg == 0) * 75 * kPacketUs
+                         : 75 * kPacketUs,
+                  5.0);
+    }
+  }
+}
+
+TEST(LidarPacketStream, SortsPacketsThatOvertookEachOther) {
+  const auto packets = Turns(160);
+  LidarPacketStream ordered(SplitAt(90));
+  const auto expected = SweepsOf(packets, &ordered);
+  auto shuffled = packets;
+  for (std::size_t i = 4; i + 4 < shuffled.size(); i += 4) {
+    std::reverse(shuffled.begin() + i, shuffled.begin() + i + 4);
+  }
+  LidarPacketStream stream(SplitAt(90));
+  const auto sweeps = SweepsOf(shuffled, &stream);
+  ASSERT_EQ(sweeps.size(), expected.size());
+  for (std::size_t i = 0; i < sweeps.size(); ++i) {
+    EXPECT_EQ(sweeps[i].utime, expected[i].utime);
+    ASSERT_EQ(sweeps[i].returns.size(), expected[i].returns.size());
+    for (std::size_t j = 0; j < sweeps[i].returns.size(); ++j) {
+      ASSERT_EQ(sweeps[i].returns[j].azimuth_rad, expected[i].returns[j].azimuth_rad);
+      ASSERT_EQ(sweeps[i].returns[j].point.time_s, expected[i].returns[j].point.time_s);
+    }
+  }
+  EXPECT_EQ(stream.Counts().count("packets late"), 0U);
+}
+
+TEST(LidarPacketStream, CountsLostLateAndAlienPackets) {
+  auto packets = Turns(150);
+  const Vlp16PacketWriter late = packets[20];
+  packets.erase(packets.begin() + 20, packets.begin() + 23);
+  packets.insert(packets.begin() + 60, late);
+  packets[5].bytes[1205] = 0;
+  packets[6].bytes.resize(100);
+  LidarPacketStream stream(SplitAt(0));
+  const auto sweeps = SweepsOf(packets, &stream);
+  EXPECT_EQ(sweeps.size(), 2U);
+  EXPECT_EQ(stream.Counts().at("packets"), 145);
+  EXPECT_EQ(stream.Counts().at("packets late"), 1);
+  EXPECT_EQ(stream.Counts().at("packets lost"), 5);  // three, and the two at fault
+  EXPECT_EQ(stream.Counts().at("packets of another sensor"), 1);
+  EXPECT_EQ(stream.Counts().at("packets of a wrong size"), 1);
+}
+
+TEST(LidarPacketStream, ATurnThatIsLostDoesNotJoinTwoSweeps) {
+  auto packets = Turns(75 * 4);
+  packets.erase(packets.begin() + 100, packets.begin() + 100 + 75);  // from and to 120 degrees
+  LidarPacketStream stream(SplitAt(0));
+  const auto sweeps = SweepsOf(packets, &stream);
+  for (const TimedSweep& sweep : sweeps) {
+    EXPECT_LT(sweep.returns.back().point.time_s, 0.11F);
+  }
+}
+
+TEST(LidarPacketStream, FollowsTheHourAndTheHost) {
+  // The clock wraps within the first turn; utime goes on.
+  LidarPacketStream stream(SplitAt(0));
+  const auto sweeps = SweepsOf(Turns(150, kVlp16ClockUs - 50000), &stream);
+  ASSERT_EQ(sweeps.size(), 2U);
+  EXPECT_EQ(sweeps[0].utime, kHostUtime);
+  EXPECT_NEAR(static_cast<double>(sweeps[1].utime - sweeps[0].utime), 75 * kPacketUs, 2.0);
+}
+
+TEST(LidarPacketStream, TrustsASynchronisedSensor) {
+  // 3 ms before the host's time within the hour: sent, and on its way for 3 ms.
+  const auto in_hour_us =
+      static_cast<std::uint32_t>((kHostUtime - 3000) % std::int64_t{kVlp16ClockUs});
+  LidarPacketStream stream(SplitAt(0));
+  EXPECT_EQ(SweepsOf(Turns(10, in_hour_us), &stream).at(0).utime, kHostUtime - 3000);
+}
+
+TEST(LidarPacketStream, RefusesBadOptions) {
+  EXPECT_THROW(LidarPacketStream(SplitAt(360)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace voqcal

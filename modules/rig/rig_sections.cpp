@@ -47,6 +47,7 @@ void ReadChannels(YamlSection* top, const std::string& prefix, Channels* channel
   read("extrinsic_averaged", &channels->extrinsic_averaged);
   read("extrinsic_refined", &channels->extrinsic_refined);
   read("calib_assessment", &channels->calib_assessment);
+  read("next_pose", &channels->next_pose);
   read("module_status", &channels->module_status);
   read("camera_to_lidar", &channels->camera_to_lidar);
   section.RefuseUnknownKeys();

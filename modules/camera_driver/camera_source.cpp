@@ -81,6 +81,9 @@ std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig) {
       return std::make_unique<SimulatedCameraSource>(rig);
     case DriverSource::kVideo:
       return MakeVideoSource(rig.camera_driver);
+    case DriverSource::kVlp16:  // the rig's reader lets only a lidar have these
+    case DriverSource::kSpectrumScan:
+      break;
   }
   throw std::logic_error("MakeCameraSource: unknown source");
 }

@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <vector>
+#include <stdexcept>
+#include <utility>
 
 #include "core/simulation/simulation.hpp"
+#include "lidar_driver/packet_lidar_source.hpp"
 #include "rig/frame_folder.hpp"
 #include "rig/point_cloud_file.hpp"
 
@@ -17,12 +19,16 @@ class FolderLidarSource : public LidarSource {
 
   std::optional<TimedCloud> Next() override {
     const auto file = folder_.Next();
-    if (!file) return {};
+    has_ended_ = !file;
+    if (has_ended_) return {};
     return TimedCloud{file->utime, ReadPointCloud(file->path)};
   }
 
+  bool HasEnded() const override { return has_ended_; }
+
  private:
   FrameFolder folder_;
+  bool has_ended_ = false;
 };
 
 class SimulatedLidarSource : public LidarSource {
@@ -32,26 +38,33 @@ class SimulatedLidarSource : public LidarSource {
 
   std::optional<TimedCloud> Next() override {
     const double time_s = static_cast<double>(num_sweeps_) / rate_hz_;
-    if (time_s > simulation_.DurationS()) return {};
+    has_ended_ = time_s > simulation_.DurationS();
+    if (has_ended_) return {};
     ++num_sweeps_;
     return TimedCloud{kSyntheticEpochUtime + std::llround(time_s * 1e6), simulation_.Sweep(time_s)};
   }
+
+  bool HasEnded() const override { return has_ended_; }
 
  private:
   Simulation simulation_;
   double rate_hz_;
   std::int64_t num_sweeps_ = 0;
+  bool has_ended_ = false;
 };
 
 }  // namespace
 
-std::unique_ptr<LidarSource> MakeLidarSource(const Rig& rig) {
+std::unique_ptr<LidarSource> MakeLidarSource(const Rig& rig, PacketListener on_packet) {
   switch (rig.lidar_driver.source) {
     case DriverSource::kFolder:
       RequireFolder(rig.lidar_driver, rig.path.string() + ": lidar_driver");
       return std::make_unique<FolderLidarSource>(rig.lidar_driver);
     case DriverSource::kSimulator:
       return std::make_unique<SimulatedLidarSource>(rig);
+    case DriverSource::kVlp16:
+    case DriverSource::kSpectrumScan:
+      return std::make_unique<PacketLidarSource>(rig.lidar_sensor, std::move(on_packet));
     case DriverSource::kVideo:  // the rig's reader lets only a camera have it
       break;
   }

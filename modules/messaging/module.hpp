@@ -43,6 +43,7 @@ class Module {
 
  protected:
   void Count(const std::string& what) { ++counters_[what]; }
+  void SetCount(const std::string& what, std::int64_t count) { counters_[what] = count; }
 
  private:
   std::map<std::string, std::int64_t> counters_;

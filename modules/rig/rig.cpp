@@ -1,5 +1,7 @@
 #include "rig/rig.hpp"
 
+#include <arpa/inet.h>
+
 #include "rig/atomic_file.hpp"
 #include "rig/rig_sections.hpp"
 #include "rig/sha256.hpp"
@@ -18,6 +20,25 @@ std::vector<std::string> DriverOptions::Problems() const {
                        std::to_string(num_named));
   }
   if (!(retry_s > 0)) problems.push_back("retry_s must be positive, is " + std::to_string(retry_s));
+  return problems;
+}
+
+int LidarSensorOptions::Port() const {
+  constexpr int kVlp16Port = 2368;
+  constexpr int kSpectrumScanPort = 5044;
+  if (port != 0) return port;
+  return packets.model == LidarModel::kVlp16 ? kVlp16Port : kSpectrumScanPort;
+}
+
+std::vector<std::string> LidarSensorOptions::Problems() const {
+  std::vector<std::string> problems = packets.Problems();
+  in_addr parsed{};
+  if (inet_pton(AF_INET, address.c_str(), &parsed) != 1) {
+    problems.push_back("address must be an IPv4 address of this host, is \"" + address + '"');
+  }
+  if (port < 0 || port > 65535) {
+    problems.push_back("port must be 0 to 65535, is " + std::to_string(port));
+  }
   return problems;
 }
 

@@ -16,6 +16,7 @@
 #include "core/estimation/average.hpp"
 #include "core/estimation/consistency.hpp"
 #include "core/estimation/set_extrinsic.hpp"
+#include "core/lidar/packet_stream.hpp"
 #include "core/selection/select_sets.hpp"
 #include "core/simulation/simulation.hpp"
 
@@ -28,6 +29,7 @@ inline constexpr char kDefaultRigLcmUrl[] = "udpm://239.255.76.67:7667?ttl=0&rec
 /// The channel of each message, prefix included.
 struct Channels {
   std::string lidar_points = "LIDAR_POINTS";
+  std::string lidar_packets = "LIDAR_PACKETS";
   std::string camera_image = "CAMERA_IMAGE";
   std::string camera_info = "CAMERA_INFO";
   std::string lidar_board = "LIDAR_BOARD";
@@ -48,7 +50,8 @@ struct Channels {
 /// microseconds since the Unix epoch. Never the wall clock: the same frames get the same times.
 inline constexpr std::int64_t kSyntheticEpochUtime = 1577836800000000;
 
-enum class DriverSource { kFolder, kSimulator, kVideo };
+/// kVideo is a camera's, kVlp16 and kSpectrumScan are a lidar's.
+enum class DriverSource { kFolder, kSimulator, kVideo, kVlp16, kSpectrumScan };
 
 /// Where a driver's frames come from.
 struct DriverOptions {
@@ -70,6 +73,25 @@ struct DriverOptions {
   std::vector<std::string> Problems() const;
 };
 
+/// A lidar whose packets the driver reads itself, from the network or a capture.
+struct LidarSensorOptions {
+  LidarPacketOptions packets;
+  std::filesystem::path pcap;  ///< A capture instead of the network; empty: the network.
+  bool is_unpaced = false;     ///< A capture as fast as it can be read, not as it was recorded.
+  /// Of this host, on which packets are awaited: an IPv4 address of its network card, or 0.0.0.0
+  /// for all cards (needed for broadcasts). By default nothing from beyond this host arrives.
+  std::string address = "127.0.0.1";
+  int port = 0;  ///< 0: the sensor's usual one, see Port().
+  /// A result file whose lidar_bias is taken off all ranges; empty: none.
+  std::filesystem::path bias_from;
+  bool are_packets_published = false;  ///< On the channel lidar_packets, as they came.
+
+  int Port() const;  ///< 2368 (VLP-16) or 5044 (Spectrum-Scan) unless `port` says otherwise.
+
+  /// One line for each broken constraint, with its value; empty if the options are usable.
+  std::vector<std::string> Problems() const;
+};
+
 /// Everything that a rig file says. Every option of every module has its place here.
 struct Rig {
   std::string name;
@@ -80,6 +102,7 @@ struct Rig {
   BoardSpec board;
   CameraModel camera;
   DriverOptions lidar_driver;
+  LidarSensorOptions lidar_sensor;  ///< Under lidar_driver; for sources kVlp16 and kSpectrumScan.
   DriverOptions camera_driver;
   SimulationOptions simulation;  ///< Used by drivers whose source is the simulator.
   LidarBoardOptions lidar_board_detector;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "rig/driver_sections.hpp"
 #include "rig/transform_yaml.hpp"
 
 namespace voqcal {
@@ -36,6 +37,7 @@ void ReadChannels(YamlSection* top, const std::string& prefix, Channels* channel
     if (!taken.insert(*channel).second) section.AddError(key, "must differ from other channels");
   };
   read("lidar_points", &channels->lidar_points);
+  read("lidar_packets", &channels->lidar_packets);
   read("camera_image", &channels->camera_image);
   read("camera_info", &channels->camera_info);
   read("lidar_board", &channels->lidar_board);
@@ -104,53 +106,6 @@ void ReadCamera(YamlSection* top, CameraModel* camera) {
   section.ReadRequired("cy_px", &camera->cy_px);
   if (section.IsComplete()) section.AddProblems(camera->Problems());
   section.RefuseUnknownKeys();
-}
-
-/// What both drivers have in common.
-/// @param has_video  whether `source: video` is one of the choices.
-void ReadFrameSource(const std::filesystem::path& rig_path,
-                     bool has_video,
-                     YamlSection* section,
-                     DriverOptions* options) {
-  std::string source = "folder";
-  std::string folder;
-  section->Read("source", &source);
-  section->Read("folder", &folder);
-  section->Read("file_ending", &options->file_ending);
-  section->Read("rate_hz", &options->rate_hz);
-  section->Read("is_repeating", &options->is_repeating);
-  if (source == "simulator") {
-    options->source = DriverSource::kSimulator;
-  } else if (source == "video" && has_video) {
-    options->source = DriverSource::kVideo;
-  } else if (source != "folder") {
-    section->AddError(
-        "source", has_video ? "must be folder, simulator or video" : "must be folder or simulator");
-  }
-  if (!folder.empty()) options->folder = (rig_path.parent_path() / folder).lexically_normal();
-}
-
-void ReadLidarDriver(YamlSection* top,
-                     const std::filesystem::path& rig_path,
-                     DriverOptions* options) {
-  YamlSection section = top->Section("lidar_driver");
-  ReadFrameSource(rig_path, false, &section, options);
-  Finish(*options, &section);
-}
-
-void ReadCameraDriver(YamlSection* top,
-                      const std::filesystem::path& rig_path,
-                      DriverOptions* options) {
-  YamlSection section = top->Section("camera_driver");
-  ReadFrameSource(rig_path, true, &section, options);
-  section.Read("jpeg_quality", &options->jpeg_quality);
-  section.Read("device", &options->device);
-  section.Read("pipeline", &options->pipeline);
-  section.Read("url", &options->url);
-  section.Read("retry_s", &options->retry_s);
-  const bool is_file = !options->url.empty() && options->url.find("://") == std::string::npos;
-  if (is_file) options->url = (rig_path.parent_path() / options->url).lexically_normal().string();
-  Finish(*options, &section);
 }
 
 void ReadScan(YamlSection* section, ScanOptions* scan) {
@@ -364,7 +319,7 @@ void ReadRigSections(YamlDocument* document, Rig* rig) {
   ReadChannels(&top, channel_prefix, &rig->channels);
   ReadBoard(&top, &rig->board);
   ReadCamera(&top, &rig->camera);
-  ReadLidarDriver(&top, rig->path, &rig->lidar_driver);
+  ReadLidarDriver(&top, rig->path, &rig->lidar_driver, &rig->lidar_sensor);
   ReadCameraDriver(&top, rig->path, &rig->camera_driver);
   ReadSimulation(&top, &rig->simulation);
   ReadLidarBoardDetector(&top, &rig->lidar_board_detector);

@@ -12,7 +12,19 @@ namespace voqcal {
 namespace {
 
 const char* ToString(DriverSource source) {
-  return source == DriverSource::kFolder ? "folder" : "simulator";
+  switch (source) {
+    case DriverSource::kFolder:
+      return "folder";
+    case DriverSource::kSimulator:
+      return "simulator";
+    case DriverSource::kVideo:
+      return "video";
+    case DriverSource::kVlp16:
+      return "vlp16";
+    case DriverSource::kSpectrumScan:
+      return "spectrum_scan";
+  }
+  return "unknown";
 }
 
 void PrintRig(const Rig& rig) {

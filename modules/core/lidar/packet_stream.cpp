@@ -11,11 +11,29 @@ namespace voqcal {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 4;
+constexpr std::int64_t kSynchronisedUs = 500000;
+// Drift of a free-running clock stays below it for hours.
+constexpr std::int64_t kMaxClockGapUs = 1000000;
 
 // In (-period / 2, period / 2].
 std::int64_t Centred(std::int64_t difference, std::int64_t period) {
   const std::int64_t remainder = ((difference % period) + period) % period;
   return remainder > period / 2 ? remainder - period : remainder;
+}
+
+// Of a beam's two echoes the decoder puts the last first.
+void KeepOneOfTwo(ReturnChoice choice, std::vector<PacketReturn>* returns) {
+  std::vector<PacketReturn> kept;
+  kept.reserve(returns->size());
+  for (const PacketReturn& echo : *returns) {
+    if (echo.kind != ReturnKind::kOther) {
+      kept.push_back(echo);
+    } else if (choice == ReturnChoice::kStrongest &&
+               echo.point.intensity > kept.back().point.intensity) {
+      kept.back() = echo;
+    }
+  }
+  *returns = std::move(kept);
 }
 
 }  // namespace
@@ -60,7 +78,18 @@ std::vector<TimedSweep> LidarPacketStream::Add(PacketBytes bytes, std::int64_t h
     ++counts_[ToString(packet.error())];
     return ended;
   }
-  const std::int64_t utime = UtimeOf(packet->sensor_us, host_utime);
+  if (options_.model == LidarModel::kVlp16 && options_.returns != ReturnChoice::kBoth) {
+    KeepOneOfTwo(options_.returns, &packet->returns);
+  }
+  if (!newest_sensor_us_) StartClock(packet->sensor_us, host_utime);
+  if (std::abs(UtimeOf(packet->sensor_us) - host_utime) > kMaxClockGapUs) {
+    ++counts_["clock restarts"];
+    ended = Finish();
+    released_utime_.reset();
+    StartClock(packet->sensor_us, host_utime);
+  }
+  const std::int64_t utime = UtimeOf(packet->sensor_us);
+  newest_sensor_us_ = std::max(*newest_sensor_us_, utime - utime_minus_sensor_us_);
   if (released_utime_ && utime < *released_utime_) {
     ++counts_["packets late"];
     return ended;
@@ -82,18 +111,17 @@ std::vector<TimedSweep> LidarPacketStream::Finish() {
   return ended;
 }
 
-std::int64_t LidarPacketStream::UtimeOf(std::uint32_t sensor_us, std::int64_t host_utime) {
-  if (!newest_sensor_us_) {
-    constexpr std::int64_t kSynchronisedUs = 500000;
-    newest_sensor_us_ = sensor_us;
-    const std::int64_t ahead_us = Centred(sensor_us - host_utime, clock_us_);
-    const bool is_synchronised =
-        options_.model == LidarModel::kVlp16 && std::abs(ahead_us) < kSynchronisedUs;
-    utime_minus_sensor_us_ = host_utime + (is_synchronised ? ahead_us : 0) - sensor_us;
-  }
+void LidarPacketStream::StartClock(std::uint32_t sensor_us, std::int64_t host_utime) {
+  newest_sensor_us_ = sensor_us;
+  const std::int64_t ahead_us = Centred(sensor_us - host_utime, clock_us_);
+  const bool is_synchronised =
+      options_.model == LidarModel::kVlp16 && std::abs(ahead_us) < kSynchronisedUs;
+  utime_minus_sensor_us_ = host_utime + (is_synchronised ? ahead_us : 0) - sensor_us;
+}
+
+std::int64_t LidarPacketStream::UtimeOf(std::uint32_t sensor_us) const {
   const std::int64_t unwrapped_us =
       *newest_sensor_us_ + Centred(sensor_us - *newest_sensor_us_, clock_us_);
-  newest_sensor_us_ = std::max(*newest_sensor_us_, unwrapped_us);
   return unwrapped_us + utime_minus_sensor_us_;
 }
 

@@ -137,6 +137,54 @@ TEST(LidarPacketStream, TrustsASynchronisedSensor) {
   EXPECT_EQ(SweepsOf(Turns(10, in_hour_us), &stream).at(0).utime, kHostUtime - 3000);
 }
 
+TEST(LidarPacketStream, KeepsTheReturnsThatAreAskedFor) {
+  // In dual mode even blocks hold the last return. Beam 0: last 10 m, strongest 3 m. Beam 1: the
+  // last is the strongest, 5 m; the other is the second strongest, 2 m. Beam 2: both the same.
+  Vlp16PacketWriter packet(0, kStep, 1000, 0x39);
+  packet.SetEcho(0, 0, 0, 5000, 20);
+  packet.SetEcho(1, 0, 0, 1500, 90);
+  packet.SetEcho(0, 0, 1, 2500, 80);
+  packet.SetEcho(1, 0, 1, 1000, 30);
+  packet.SetEcho(0, 0, 2, 2000, 50);
+  packet.SetEcho(1, 0, 2, 2000, 50);
+  const auto distances_m = [&packet](ReturnChoice returns) {
+    LidarPacketOptions options = SplitAt(0);
+    options.returns = returns;
+    LidarPacketStream stream(options);
+    std::vector<double> found_m;
+    for (const TimedSweep& sweep : SweepsOf({packet}, &stream)) {
+      for (const PacketReturn& echo : sweep.returns) found_m.push_back(echo.distance_m);
+    }
+    return found_m;
+  };
+  EXPECT_EQ(distances_m(ReturnChoice::kBoth), (std::vector<double>{10, 3, 5, 2, 4}));
+  EXPECT_EQ(distances_m(ReturnChoice::kStrongest), (std::vector<double>{3, 5, 4}));
+  EXPECT_EQ(distances_m(ReturnChoice::kLast), (std::vector<double>{10, 5, 4}));
+}
+
+TEST(LidarPacketStream, GoesOnAfterASensorIsSwitchedOffAndOn) {
+  // Its clock begins anew, ten minutes back by its own count and a minute on by the host's.
+  LidarPacketStream stream(SplitAt(0));
+  std::vector<TimedSweep> sweeps;
+  const auto append = [&](std::uint32_t first_us, std::int64_t host_utime) {
+    for (int i = 0; i < 160; ++i) {
+      const auto after_us = static_cast<std::uint32_t>(std::llround(i * kPacketUs));
+      Vlp16PacketWriter packet(i * 12 * kStep % 36000, kStep, first_us + after_us);
+      packet.SetAllEchoes(1500, 50);
+      for (auto& sweep : stream.Add(packet.Bytes(), host_utime + after_us)) sweeps.push_back(sweep);
+    }
+  };
+  append(600000000, kHostUtime);
+  append(1000, kHostUtime + 60000000);
+  // Of each run two whole turns, and of the first what was left of the third.
+  ASSERT_EQ(sweeps.size(), 5U);
+  EXPECT_EQ(sweeps[0].utime, kHostUtime);
+  EXPECT_EQ(sweeps[3].utime, kHostUtime + 60000000);
+  EXPECT_EQ(stream.Counts().at("clock restarts"), 1);
+  EXPECT_EQ(stream.Counts().count("packets late"), 0U);
+  EXPECT_EQ(stream.Counts().count("packets lost"), 0U);
+}
+
 TEST(LidarPacketStream, RefusesBadOptions) {
   EXPECT_THROW(LidarPacketStream(SplitAt(360)), std::invalid_argument);
 }

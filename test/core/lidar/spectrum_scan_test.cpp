@@ -5,58 +5,16 @@
 
 #include <gtest/gtest.h>
 
+#include "support/spectrum_packet.hpp"
+
 namespace voqcal {
 namespace {
 
 constexpr double kDeg = M_PI / 180.0;
 
-void WriteBig(std::uint64_t value, int num_bytes, std::vector<std::uint8_t>* bytes) {
-  for (int i = num_bytes - 1; i >= 0; --i) {
-    bytes->push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-  }
-}
-
-struct Point {
-  int ticks = 0;  // of 8 * cycle / 1000 us
-  double theta_deg = 90.0;
-  double phi_deg = 0.0;
-  std::uint32_t distance_mm = 0x7ffff;
-  int intensity = 0;
-};
-
-// A packet of version 1 as its layout is described.
-std::vector<std::uint8_t> VersionOne(std::uint32_t base_us, int cycle, std::vector<Point> points) {
-  points.resize(160);
-  std::vector<std::uint8_t> bytes{0x01};
-  WriteBig(base_us, 4, &bytes);
-  WriteBig(static_cast<std::uint64_t>(cycle), 2, &bytes);
-  bytes.push_back(0);
-  for (const Point& point : points) {
-    bytes.push_back(static_cast<std::uint8_t>(point.ticks & 0xff));
-    WriteBig(static_cast<std::uint64_t>(std::lround(point.theta_deg * 100)), 2, &bytes);
-    const auto phi = static_cast<std::uint64_t>(std::lround(point.phi_deg * 100)) & 0x7fff;
-    const auto intensity = static_cast<std::uint64_t>(point.intensity);
-    WriteBig(
-        phi << 33 | std::uint64_t{point.distance_mm} << 14 | intensity << 6 | 3U << 2, 6, &bytes);
-  }
-  return bytes;
-}
-
-std::vector<std::uint8_t> VersionZero(std::uint32_t time_us, const std::vector<Point>& points) {
-  std::vector<std::uint8_t> bytes{0x44, 0x50};
-  bytes.resize(14, 0);
-  WriteBig(points.size(), 2, &bytes);
-  for (const Point& point : points) {
-    WriteBig(time_us + static_cast<std::uint32_t>(point.ticks), 4, &bytes);
-    for (const double angle_deg : {point.theta_deg, point.phi_deg}) {
-      WriteBig(static_cast<std::uint32_t>(std::lround(angle_deg * 1e4)), 4, &bytes);
-    }
-    WriteBig(point.distance_mm, 4, &bytes);
-    bytes.push_back(static_cast<std::uint8_t>(point.intensity));
-    WriteBig(0, 3, &bytes);
-  }
-  return bytes;
-}
+using Point = test::SpectrumPoint;
+using test::SpectrumVersionOne;
+using test::SpectrumVersionZero;
 
 Expected<LidarPacket, PacketFault> Decode(const std::vector<std::uint8_t>& bytes) {
   return DecodeSpectrumScan({bytes.data(), bytes.size()}, 0.0);
@@ -71,12 +29,12 @@ void ExpectAt(const PacketReturn& echo, double theta_deg, double phi_deg, double
 }
 
 TEST(DecodeSpectrumScan, ReadsVersionOneBitByBit) {
-  const auto decoded = Decode(VersionOne(4000000000U,
-                                         500,
-                                         {{10, 40.0, -12.5, 7500, 200},
-                                          {250, 90.0, 3.21, 524286, 1},
-                                          {260, 144.99, 12.5, 1, 255},
-                                          {515, 60.0, 0.0, 2000, 9}}));
+  const auto decoded = Decode(SpectrumVersionOne(4000000000U,
+                                                 500,
+                                                 {{10, 40.0, -12.5, 7500, 200},
+                                                  {250, 90.0, 3.21, 524286, 1},
+                                                  {260, 144.99, 12.5, 1, 255},
+                                                  {515, 60.0, 0.0, 2000, 9}}));
   ASSERT_TRUE(decoded);
   EXPECT_EQ(decoded->sensor_us, 4000000000U);
   ASSERT_EQ(decoded->returns.size(), 4U);  // the others have no distance
@@ -92,7 +50,7 @@ TEST(DecodeSpectrumScan, ReadsVersionOneBitByBit) {
 }
 
 TEST(DecodeSpectrumScan, ReadsVersionZero) {
-  const auto decoded = Decode(VersionZero(
+  const auto decoded = Decode(SpectrumVersionZero(
       0xfffffff0U,
       {{0, 35.1234, -7.5, 3210, 8}, {32, 90.0, 0.0, 0, 0}, {40, 91.0, 12.0001, 70000, 9}}));
   ASSERT_TRUE(decoded);
@@ -103,13 +61,13 @@ TEST(DecodeSpectrumScan, ReadsVersionZero) {
 }
 
 TEST(DecodeSpectrumScan, RefusesWhatIsNeither) {
-  auto bytes = VersionOne(0, 500, {});
+  auto bytes = SpectrumVersionOne(0, 500, {});
   bytes[0] = 2;
   EXPECT_EQ(Decode(bytes).error(), PacketFault::kAlien);
   bytes.pop_back();
   EXPECT_EQ(Decode(bytes).error(), PacketFault::kWrongSize);
   EXPECT_EQ(Decode({}).error(), PacketFault::kWrongSize);
-  bytes = VersionZero(0, {{}, {}});
+  bytes = SpectrumVersionZero(0, {{}, {}});
   bytes.pop_back();
   EXPECT_EQ(Decode(bytes).error(), PacketFault::kWrongSize);
   bytes[14] = 0xff;  // more points than there are bytes

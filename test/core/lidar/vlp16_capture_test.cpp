@@ -41,6 +41,7 @@ std::vector<TimedSweep> SweepsOfCapture() {
   const std::string bytes = ReadAll(kCapture);
   LidarPacketOptions options;
   options.split_azimuth_rad = 0.0;
+  options.returns = ReturnChoice::kBoth;
   LidarPacketStream stream(options);
   std::vector<TimedSweep> sweeps;
   std::size_t at = 24;

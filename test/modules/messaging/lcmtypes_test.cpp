@@ -10,6 +10,7 @@
 #include "voqcal/image_t.hpp"
 #include "voqcal/pointcloud2_t.hpp"
 #include "voqcal/pointfield_t.hpp"
+#include "voqcal/raw_t.hpp"
 #include "voqcal/rigid_transform_t.hpp"
 #include "voqcal/samples_t.hpp"
 
@@ -51,6 +52,7 @@ TEST(Fingerprint, IsBotCores) {
   EXPECT_EQ(Fingerprint<image_metadata_t>(), 0x9a4b634d0577fb8eU);
   EXPECT_EQ(Fingerprint<pointcloud2_t>(), 0x0bcd5ce4bf5a1b4aU);
   EXPECT_EQ(Fingerprint<pointfield_t>(), 0xb24e10825e0b476dU);
+  EXPECT_EQ(Fingerprint<raw_t>(), 0x30571b45b804c18eU);
   EXPECT_EQ(Fingerprint<rigid_transform_t>(), 0xea9ffbf2acc5c5aeU);
 }
 

@@ -84,6 +84,22 @@ TEST_F(DriverNodesTest, LidarFolderComesInNaturalOrderWithTimesOfTheNumbers) {
   EXPECT_EQ(node.State(), "source ended");
 }
 
+TEST_F(DriverNodesTest, LidarFolderMayHoldPlyFiles) {
+  folder_.Write("sweep_7.ply",
+                "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                "property float z\nproperty float intensity\nend_header\n7 0 0 50\n8 1 0 60\n");
+  folder_.Write("sweep_9.PCD", PcdAt(9));
+  LidarDriverNode node(rig_, &bus_);
+  RunToTheEnd(&node, &bus_);
+  ASSERT_THAT(clouds_.messages, SizeIs(2));
+  const PointCloud cloud = FromMessage(clouds_.messages[0]);
+  ASSERT_THAT(cloud.points, SizeIs(2));
+  EXPECT_EQ(cloud.points[1].position_m, Eigen::Vector3f(8, 1, 0));
+  EXPECT_EQ(cloud.points[1].intensity, 60.0F);
+  EXPECT_EQ(clouds_.messages[0].utime, kSyntheticEpochUtime + 7 * kPeriodUs);
+  EXPECT_EQ(FromMessage(clouds_.messages[1]).points.at(0).position_m.x(), 9.0F);
+}
+
 TEST_F(DriverNodesTest, CameraFolderPassesTheFilesOnEachWithItsInfo) {
   WriteImage("pose10.png", 10);
   WriteImage("pose2.png", 2);

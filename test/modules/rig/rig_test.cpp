@@ -97,6 +97,42 @@ TEST(LoadRig, ReadsTheScanPatternByName) {
             "rosette, is \"spiral\"");
 }
 
+TEST(LoadRig, ReadsALidarOfTheNetworkOrACapture) {
+  const test::TemporaryFolder folder;
+  const Rig rig = LoadRig(folder.Write(
+      "rig.yaml",
+      Minimal() + "lidar_driver:\n  source: vlp16\n  sensor: {pcap: drive.pcap, returns: last, "
+                  "split_azimuth_deg: 90, bias_from: old/extrinsic.yaml,\n    elevations_deg: "
+                  "[-15, -13, -11, -9, -7, -5, -3, -1, 1, 3, 5, 7, 9, 11, 13, 15]}\n"));
+  EXPECT_EQ(rig.lidar_driver.source, DriverSource::kVlp16);
+  EXPECT_EQ(rig.lidar_sensor.pcap, folder.path() / "drive.pcap");
+  EXPECT_EQ(rig.lidar_sensor.bias_from, folder.path() / "old/extrinsic.yaml");
+  EXPECT_EQ(rig.lidar_sensor.packets.returns, ReturnChoice::kLast);
+  EXPECT_DOUBLE_EQ(rig.lidar_sensor.packets.split_azimuth_rad, M_PI / 2);
+  EXPECT_DOUBLE_EQ(rig.lidar_sensor.packets.vlp16.elevations_rad.at(15), 15 * M_PI / 180);
+  EXPECT_EQ(rig.lidar_sensor.Port(), 2368);
+  const Rig baraja = Load(Minimal() + "lidar_driver: {source: spectrum_scan}\n");
+  EXPECT_EQ(baraja.lidar_sensor.packets.model, LidarModel::kSpectrumScan);
+  EXPECT_EQ(baraja.lidar_sensor.Port(), 5044);
+  EXPECT_EQ(baraja.lidar_sensor.address, "127.0.0.1");  // nothing from beyond this host by default
+}
+
+TEST(LoadRig, RefusesALidarThatCannotBe) {
+  const auto error = [](const std::string& sensor) {
+    return LoadError(Minimal() + "lidar_driver: {source: vlp16, sensor: {" + sensor + "}}\n");
+  };
+  EXPECT_EQ(error("address: lidar.local"),
+            "rig.yaml:5: lidar_driver.sensor: address must be an IPv4 address of this host, is "
+            "\"lidar.local\"");
+  EXPECT_EQ(error("port: 70000"),
+            "rig.yaml:5: lidar_driver.sensor: port must be 0 to 65535, is 70000");
+  EXPECT_EQ(error("returns: first"),
+            "rig.yaml:5: lidar_driver.sensor.returns must be strongest, last or both, is "
+            "\"first\"");
+  EXPECT_THAT(error("elevations_deg: [1, 2]"), HasSubstr("elevations_deg must have 16 entries"));
+  EXPECT_THAT(error("split_azimuth_deg: 360"), HasSubstr("split_azimuth_deg must be from 0"));
+}
+
 TEST(LoadRig, TakesASectionWhoseOptionsAreAllCommentedOut) {
   EXPECT_EQ(LoadError(Minimal() + "sample_collector:\n  # num_still_frames: 1\n"), "");
 }
@@ -118,7 +154,8 @@ TEST(LoadRig, NamesFileLineKeyRuleAndValue) {
   EXPECT_EQ(LoadError(text + "lcm: loopback\n"),
             "rig.yaml:5: lcm must be a section, is \"loopback\"");
   EXPECT_EQ(LoadError(text + "lidar_driver: {source: tape}\n"),
-            "rig.yaml:5: lidar_driver.source must be folder or simulator, is \"tape\"");
+            "rig.yaml:5: lidar_driver.source must be folder, simulator, vlp16 or spectrum_scan, is "
+            "\"tape\"");
 }
 
 TEST(LoadRig, RefusesWhatIsNotFinite) {

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/estimation/lidar_bias.hpp"
+#include "core/lidar/packet_stream.hpp"
+#include "lidar_driver/lidar_source.hpp"
+#include "lidar_driver/packet_source.hpp"
+#include "rig/rig.hpp"
+
+namespace voqcal {
+
+/// Sweeps from a sensor's own packets, of the network or of a capture. The points' times follow
+/// from the packets and their times of arrival alone.
+class PacketLidarSource : public LidarSource {
+ public:
+  /// @param on_packet  called with each datagram, understood or not; may be empty.
+  PacketLidarSource(const LidarSensorOptions& options, PacketListener on_packet);
+
+  std::optional<TimedCloud> Next() override;
+  bool HasEnded() const override { return has_ended_ && ready_.empty(); }
+  SweepPace Pace() const override { return pace_; }
+  std::string State() const override { return packets_->State(); }
+  std::map<std::string, std::int64_t> Counts() const override;
+
+ private:
+  bool Read();  ///< One datagram; false if there is none now.
+
+  LidarPacketStream stream_;
+  bool has_ring_;
+  LidarBias bias_;
+  PacketListener on_packet_;
+  SweepPace pace_;
+  std::unique_ptr<PacketSource> packets_;
+  std::deque<TimedSweep> ready_;
+  bool has_ended_ = false;
+};
+
+}  // namespace voqcal

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+
+#include "rig/rig.hpp"
+#include "rig/yaml_reader.hpp"
+
+namespace voqcal {
+
+/// The section lidar_driver. Relative paths are relative to the folder of `rig_path`.
+void ReadLidarDriver(YamlSection* top,
+                     const std::filesystem::path& rig_path,
+                     DriverOptions* options,
+                     LidarSensorOptions* sensor);
+
+/// The section camera_driver.
+void ReadCameraDriver(YamlSection* top,
+                      const std::filesystem::path& rig_path,
+                      DriverOptions* options);
+
+}  // namespace voqcal

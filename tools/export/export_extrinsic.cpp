@@ -7,8 +7,8 @@
 #include <string>
 
 #include "common/tool_main.hpp"
-#include "export/extrinsic_text.hpp"
 #include "rig/atomic_file.hpp"
+#include "rig/extrinsic_text.hpp"
 #include "rig/result_file.hpp"
 #include "rig/rig.hpp"
 

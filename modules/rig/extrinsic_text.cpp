@@ -1,4 +1,4 @@
-#include "export/extrinsic_text.hpp"
+#include "rig/extrinsic_text.hpp"
 
 #include <algorithm>
 #include <cmath>

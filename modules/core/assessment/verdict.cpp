@@ -1,0 +1,147 @@
+#include "core/assessment/verdict.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+namespace voqcal {
+namespace {
+
+/// Good up to the first, bad beyond the second; where more is better, the other way round.
+struct Limits {
+  double good;
+  double bad;
+};
+
+constexpr Limits kHeldOutMm{5.0, 12.0};    // the method's paper reports means of 10 to 12 mm
+constexpr Limits kOverfitRatio{1.5, 3.0};  // 1.1 is common with 30 poses
+constexpr Limits kSigmaDeg{0.05, 0.2};     // 0.05 degrees is 9 mm at 10 m
+constexpr Limits kSigmaMm{3.0, 10.0};
+constexpr Limits kNormalDeg{0.7, 2.0};  // a clean simulated VLP-16 shows about 0.6
+constexpr Limits kNumPoses{15, 6};
+constexpr Limits kNumCells{5, 2};  // of the 9 parts of the image
+constexpr Limits kLeftOutShare{0.15, 0.4};
+
+Grade GradeOf(double value, const Limits& limits) {
+  if (std::isnan(value)) return Grade::kLook;
+  const double sign = limits.good <= limits.bad ? 1.0 : -1.0;
+  if (sign * value <= sign * limits.good) return Grade::kGood;
+  return sign * value > sign * limits.bad ? Grade::kBad : Grade::kLook;
+}
+
+std::string Number(double value, int digits, const std::string& unit) {
+  if (std::isnan(value)) return "unknown";
+  char text[64];
+  std::snprintf(text, sizeof(text), "%.*f ", digits, value);
+  return text + unit;
+}
+
+std::string Sentence(std::string text) {
+  if (text.empty()) return text;
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text.back() == '.' ? text : text + ".";
+}
+
+void AddFit(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
+  const double ratio = evidence.held_out_mm / evidence.in_sample_mm;
+  checks->push_back({"Poses it never saw",
+                     GradeOf(evidence.held_out_mm, kHeldOutMm),
+                     "The board's centre lands " + Number(evidence.held_out_mm, 1, "mm") +
+                         " (mean) from where the camera sees it, on poses left out of the fit."});
+  checks->push_back(
+      {"No overfitting",
+       GradeOf(ratio, kOverfitRatio),
+       "That is " + Number(ratio, 2, "times") + " the error on the poses that made the result."});
+  checks->push_back({"Board directions",
+                     GradeOf(evidence.normal_deg, kNormalDeg),
+                     "Lidar and camera disagree by " + Number(evidence.normal_deg, 2, "degrees") +
+                         " (mean) on where the board faces. Above a degree the lidar's ranges are "
+                         "usually biased; the centres do not show it."});
+}
+
+void AddCertainty(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
+  checks->push_back(
+      {"Rotation is certain",
+       GradeOf(evidence.sigma_deg, kSigmaDeg),
+       "Largest standard deviation " + Number(evidence.sigma_deg, 3, "degrees") + "."});
+  checks->push_back({"Translation is certain",
+                     GradeOf(evidence.sigma_mm, kSigmaMm),
+                     "Largest standard deviation " + Number(evidence.sigma_mm, 1, "mm") + "."});
+}
+
+void AddPoses(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
+  const int num_left_out = evidence.num_samples - evidence.num_used;
+  checks->push_back(
+      {"Enough poses",
+       GradeOf(evidence.num_used, kNumPoses),
+       std::to_string(evidence.num_used) + " poses were used; 20 to 40 are recommended."});
+  checks->push_back({"Poses all over the image",
+                     GradeOf(evidence.num_cells, kNumCells),
+                     std::to_string(evidence.num_cells) +
+                         " of the 9 parts of the image have a pose. Where there is none, the "
+                         "result is extrapolated."});
+  checks->push_back({"Few samples rejected",
+                     GradeOf(static_cast<double>(num_left_out) / std::max(evidence.num_samples, 1),
+                             kLeftOutShare),
+                     std::to_string(num_left_out) + " of " + std::to_string(evidence.num_samples) +
+                         " samples disagreed with the others and were left out."});
+}
+
+/// The scene's own word, where it has one, and the likeliest cause of what is wrong.
+void AddScene(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
+  if (evidence.scene != SceneVerdict::kNotJudged) {
+    checks->push_back({"The whole scene",
+                       evidence.scene == SceneVerdict::kAgrees ? Grade::kGood : Grade::kBad,
+                       Sentence(evidence.scene_reason)});
+  }
+  const std::string& fault = evidence.likeliest_fault;
+  checks->push_back({"Nothing suspicious",
+                     fault.empty() ? Grade::kGood : Grade::kLook,
+                     fault.empty() ? "Nothing was found that would explain the errors better."
+                                   : Sentence(fault)});
+}
+
+std::string Headline(Grade grade) {
+  switch (grade) {
+    case Grade::kGood:
+      return "Good: use it.";
+    case Grade::kLook:
+      return "Usable, but look at what is marked below.";
+    case Grade::kBad:
+      break;
+  }
+  return "Do not use it yet: see what is marked below.";
+}
+
+}  // namespace
+
+std::string ToString(Grade grade) {
+  switch (grade) {
+    case Grade::kGood:
+      return "good";
+    case Grade::kLook:
+      return "look";
+    case Grade::kBad:
+      break;
+  }
+  return "bad";
+}
+
+Verdict Judge(const Evidence& evidence) {
+  Verdict verdict;
+  AddFit(evidence, &verdict.checks);
+  AddCertainty(evidence, &verdict.checks);
+  AddPoses(evidence, &verdict.checks);
+  AddScene(evidence, &verdict.checks);
+  verdict.grade = std::max_element(verdict.checks.begin(),
+                                   verdict.checks.end(),
+                                   [](const VerdictCheck& a, const VerdictCheck& b) {
+                                     return a.grade < b.grade;
+                                   })
+                      ->grade;
+  verdict.headline = Headline(verdict.grade);
+  return verdict;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/assessment/scene_check.hpp"
+
+namespace voqcal {
+
+/// What a verdict rests on. NaN: unknown, which is never good.
+struct Evidence {
+  double held_out_mm = std::numeric_limits<double>::quiet_NaN();   ///< Mean centre error.
+  double in_sample_mm = std::numeric_limits<double>::quiet_NaN();  ///< The same of the fit's poses.
+  double normal_deg = std::numeric_limits<double>::quiet_NaN();    ///< Mean, held out.
+  double sigma_deg = std::numeric_limits<double>::quiet_NaN();     ///< Of the worst axis.
+  double sigma_mm = std::numeric_limits<double>::quiet_NaN();
+  int num_used = 0;
+  int num_samples = 0;  ///< With those that were left out.
+  int num_cells = 0;    ///< Of the 9 parts of the image, how many have a used pose.
+  SceneVerdict scene = SceneVerdict::kNotJudged;
+  std::string scene_reason;
+  std::string likeliest_fault;  ///< A sentence; empty: none was found.
+};
+
+enum class Grade { kGood, kLook, kBad };
+
+std::string ToString(Grade grade);  ///< "good", "look", "bad".
+
+/// One thing that was looked at, and what it means.
+struct VerdictCheck {
+  std::string name;  ///< "Rotation is certain"
+  Grade grade = Grade::kLook;
+  std::string text;  ///< A sentence with the number.
+};
+
+/// Is the result good? In words for somebody who has never calibrated anything.
+struct Verdict {
+  Grade grade = Grade::kBad;  ///< The worst of the checks.
+  std::string headline;
+  std::vector<VerdictCheck> checks;
+};
+
+Verdict Judge(const Evidence& evidence);
+
+}  // namespace voqcal

@@ -19,6 +19,7 @@
 #include "core/lidar/packet_stream.hpp"
 #include "core/selection/select_sets.hpp"
 #include "core/simulation/simulation.hpp"
+#include "rig/dashboard_options.hpp"
 
 namespace voqcal {
 
@@ -115,6 +116,7 @@ struct Rig {
   RefinerOptions extrinsic_refiner;
   SceneCheckOptions scene_check;  ///< Under assessor.
   DiagnosisOptions diagnosis;     ///< Under assessor.
+  DashboardOptions dashboard;
 };
 
 /// Reads and checks a rig file (YAML). Options that are not given keep their defaults; board and

@@ -333,6 +333,7 @@ void ReadRigSections(YamlDocument* document, Rig* rig) {
                                rig->extrinsic_estimator.sigma_centre_px};
   ReadExtrinsicRefiner(&top, &rig->extrinsic_refiner);
   ReadAssessor(&top, &rig->scene_check, &rig->diagnosis);
+  ReadDashboard(&top, &rig->dashboard);
   top.RefuseUnknownKeys();
 }
 

@@ -111,7 +111,8 @@ TEST_F(BadInput, EveryModuleRefusesAWrongRigFile) {
                              "voq_selector",
                              "extrinsic_estimator",
                              "extrinsic_refiner",
-                             "assessor"}) {
+                             "assessor",
+                             "dashboard"}) {
     ExpectRefused({test::Program(module), "--rig", rig_, "--session", Path("session")},
                   AllOf(HasSubstr(rig_), HasSubstr("colour")));
   }

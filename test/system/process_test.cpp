@@ -34,7 +34,8 @@ const std::vector<std::string> kModules = {"lidar_driver",
                                            "voq_selector",
                                            "extrinsic_estimator",
                                            "extrinsic_refiner",
-                                           "assessor"};
+                                           "assessor",
+                                           "dashboard"};
 const std::vector<std::string> kTools = {"calibrate",
                                          "check_rig",
                                          "command",

@@ -81,7 +81,8 @@ std::vector<std::string> AllModuleNames() {
           "voq_selector",
           "extrinsic_estimator",
           "extrinsic_refiner",
-          "assessor"};
+          "assessor",
+          "dashboard"};
 }
 
 StatusPage::StatusPage(std::vector<std::string> modules) : modules_(std::move(modules)) {}

@@ -1,0 +1,229 @@
+#include "dashboard/dashboard_node.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "dashboard/exports.hpp"
+#include "dashboard/sensor_frames.hpp"
+#include "messaging/convert_board.hpp"
+#include "messaging/convert_points.hpp"
+#include "messaging/convert_result.hpp"
+#include "messaging/made_from.hpp"
+#include "voqcal/command_t.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr std::size_t kMaxEvents = 40;
+constexpr std::chrono::milliseconds kCommandPeriod{50};
+
+/// With no page open a frame a second is kept ready for the next.
+std::chrono::steady_clock::duration Period(double rate_hz, bool has_pages) {
+  const std::chrono::duration<double> period(has_pages ? 1.0 / rate_hz : 1.0);
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(period);
+}
+
+/// What rejects have in common: "the board moves: 0.12 m" is the same as "the board moves: 0.13 m".
+std::string Cause(const event_t& event) {
+  return event.kind + " " + event.reason.substr(0, event.reason.find(':'));
+}
+
+std::int64_t WallClockUs() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+DashboardNode::DashboardNode(const Rig& rig,
+                             Bus* bus,
+                             DashboardServer* server,
+                             const std::filesystem::path& session_folder)
+    : rig_(rig), bus_(*bus), server_(*server), result_file_(session_folder / "extrinsic.yaml") {
+  Subscribe();
+  Show(Slot::kRig, RigJson(rig_));
+}
+
+void DashboardNode::Subscribe() {
+  const Channels& channels = rig_.channels;
+  bus_.Subscribe<image_t>(
+      channels.camera_image, Queue::kState, [this](const image_t& m) { OnImage(m); });
+  bus_.Subscribe<pointcloud2_t>(
+      channels.lidar_points, Queue::kState, [this](const pointcloud2_t& m) { OnPoints(m); });
+  bus_.Subscribe<lidar_board_t>(
+      channels.lidar_board, Queue::kState, [this](const lidar_board_t& m) {
+        Show(Slot::kLidarBoard, LidarBoardJson(m));
+      });
+  bus_.Subscribe<camera_board_t>(
+      channels.camera_board, Queue::kState, [this](const camera_board_t& m) {
+        Try([&] { Show(Slot::kCameraBoard, CameraBoardJson(m, rig_.camera)); });
+      });
+  bus_.Subscribe<next_pose_t>(channels.next_pose, Queue::kState, [this](const next_pose_t& m) {
+    Show(Slot::kGuidance, GuidanceJson(m));
+  });
+  bus_.Subscribe<event_t>(
+      channels.calib_event, Queue::kEvery, [this](const event_t& m) { OnEvent(m); });
+  bus_.Subscribe<module_status_t>(
+      channels.module_status, Queue::kEvery, [this](const module_status_t& m) {
+        heartbeats_.Take(m, Clock::now());
+      });
+  const auto keep = [this](auto* newest) {
+    return [this, newest](const auto& message) {
+      *newest = message;
+      is_state_new_ = true;
+    };
+  };
+  bus_.Subscribe<samples_t>(channels.calib_samples, Queue::kState, keep(&samples_));
+  bus_.Subscribe<voq_sets_t>(channels.voq_sets, Queue::kState, keep(&sets_));
+  bus_.Subscribe<extrinsic_averaged_t>(
+      channels.extrinsic_averaged, Queue::kState, keep(&averaged_));
+  bus_.Subscribe<extrinsic_refined_t>(channels.extrinsic_refined, Queue::kState, keep(&refined_));
+  bus_.Subscribe<assessment_t>(channels.calib_assessment, Queue::kState, keep(&assessment_));
+}
+
+std::string DashboardNode::State() const {
+  return "running: " + std::to_string(server_.num_pages()) + " pages open";
+}
+
+bool DashboardNode::Step() {
+  for (const PageRequest& request : server_.TakeCommands()) SendCommand(request);
+  if (!std::exchange(is_state_new_, false)) return false;
+  Try([this] { ShowSamples(); });
+  Try([this] { ShowResult(); });
+  return false;
+}
+
+std::optional<std::chrono::steady_clock::time_point> DashboardNode::NextStep() const {
+  return Clock::now() + kCommandPeriod;
+}
+
+void DashboardNode::Republish() { Show(Slot::kModules, heartbeats_.Json(Clock::now())); }
+
+void DashboardNode::OnImage(const image_t& message) {
+  const Clock::time_point now = Clock::now();
+  if (now < next_image_) return;
+  next_image_ = now + Period(rig_.dashboard.image_rate_hz, server_.num_pages() > 0);
+  Try([&] { server_.Show(Slot::kImage, ImageFrame(message, rig_.dashboard)); });
+}
+
+void DashboardNode::OnPoints(const pointcloud2_t& message) {
+  const Clock::time_point now = Clock::now();
+  if (now < next_cloud_) return;
+  next_cloud_ = now + Period(rig_.dashboard.cloud_rate_hz, server_.num_pages() > 0);
+  Try([&] {
+    server_.Show(
+        Slot::kCloud,
+        CloudFrame(FromMessage(message), message.utime, Extrinsic(), rig_.camera, rig_.dashboard));
+  });
+}
+
+void DashboardNode::OnEvent(const event_t& message) {
+  if (!events_.empty() && Cause(events_.front().event) == Cause(message) &&
+      message.kind == "rejected") {
+    events_.front() = {message, events_.front().count + 1};
+  } else {
+    events_.push_front({message, 1});
+  }
+  if (events_.size() > kMaxEvents) events_.pop_back();
+  Show(Slot::kEvents, EventsJson(events_));
+}
+
+void DashboardNode::SendCommand(const PageRequest& request) {
+  command_t message{};
+  message.utime = WallClockUs();
+  message.command = request.command;
+  message.sample_id = request.sample_id;
+  bus_.Publish(rig_.channels.calib_command, message);
+  Count("commands: " + request.command);
+}
+
+void DashboardNode::ShowSamples() {
+  if (!samples_) return;
+  const bool is_judged =
+      assessment_ && assessment_->problem.empty() && IsMadeFrom(*samples_, *assessment_);
+  Show(Slot::kSamples,
+       SamplesJson(*samples_,
+                   TakenSamples(),
+                   averaged_ ? &*averaged_ : nullptr,
+                   is_judged ? &*assessment_ : nullptr,
+                   rig_));
+}
+
+// An estimate of older samples stays in sight while a newer one is computed.
+void DashboardNode::ShowResult() {
+  if (!samples_ || !refined_ || !assessment_)
+    return Show(Slot::kResult, NoResultJson("", WorkingOn()));
+  const bool is_whole = refined_->problem.empty() && assessment_->problem.empty() &&
+                        refined_->samples_sha256 == assessment_->samples_sha256;
+  const std::string working_on = WorkingOn();
+  if (!is_whole) {
+    if (working_on.empty()) Show(Slot::kResult, NoResultJson(refined_->problem, ""));
+    return;
+  }
+  OfferExports();
+  const Evidence evidence = EvidenceOf(*refined_, *assessment_, samples_->num_samples);
+  Show(Slot::kResult,
+       ResultJson(*refined_,
+                  *assessment_,
+                  Judge(evidence),
+                  IsMadeFrom(*samples_, *assessment_),
+                  working_on,
+                  exports_));
+}
+
+void DashboardNode::OfferExports() {
+  if (exports_sha256_ == assessment_->samples_sha256) return;
+  exports_sha256_ = assessment_->samples_sha256;
+  exports_.clear();
+  std::map<std::string, StaticFile> exports;
+  try {
+    exports = ExportsOf(result_file_, rig_.camera);
+  } catch (const std::runtime_error& error) {
+    spdlog::warn("nothing to export: {}", error.what());
+  }
+  for (const auto& [name, file] : exports) exports_.push_back(name);
+  server_.Offer(std::move(exports));
+}
+
+// A candidate may be chosen of a sample that was discarded since: then the samples as they came.
+std::vector<BoardSample> DashboardNode::TakenSamples() const {
+  if (averaged_ && IsMadeFrom(*samples_, *averaged_)) {
+    return SamplesAsChosen(*samples_, averaged_->chosen);
+  }
+  return FromMessage(*samples_);
+}
+
+std::optional<Eigen::Isometry3d> DashboardNode::Extrinsic() const {
+  if (refined_ && refined_->problem.empty()) return FromMessage(refined_->T_camera_lidar);
+  if (averaged_ && averaged_->problem.empty()) return FromMessage(averaged_->T_camera_lidar);
+  return {};
+}
+
+std::string DashboardNode::WorkingOn() const {
+  if (!samples_ || samples_->num_samples == 0) return "";
+  if (!sets_ || !IsMadeFrom(*samples_, *sets_)) return "choosing sets of poses";
+  if (!averaged_ || !IsMadeFrom(*samples_, *averaged_)) return "calibrating each set";
+  if (!refined_ || !IsMadeFrom(*samples_, *refined_)) return "refining over all poses";
+  if (!assessment_ || !IsMadeFrom(*samples_, *assessment_)) return "judging the result";
+  return "";
+}
+
+void DashboardNode::Show(Slot slot, std::string json) {
+  std::string& shown = shown_.at(static_cast<std::size_t>(slot));
+  if (json == shown) return;
+  shown = json;
+  server_.Show(slot, TextFrame(std::move(json)));
+}
+
+template <typename Shower>
+void DashboardNode::Try(const Shower& show) try {
+  show();
+} catch (const std::runtime_error& error) {
+  spdlog::debug("not shown: {}", error.what());
+  Count("messages that cannot be shown");
+}
+
+}  // namespace voqcal

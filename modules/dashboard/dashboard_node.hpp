@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dashboard/heartbeats.hpp"
+#include "dashboard/page_state.hpp"
+#include "dashboard/server.hpp"
+#include "messaging/bus.hpp"
+#include "messaging/module.hpp"
+#include "rig/rig.hpp"
+#include "voqcal/image_t.hpp"
+#include "voqcal/pointcloud2_t.hpp"
+#include "voqcal/voq_sets_t.hpp"
+
+namespace voqcal {
+
+/// Everything that the modules say in, pages out; and the other way, the operator's clicks as
+/// CALIB_COMMAND. Computes nothing of its own.
+class DashboardNode : public Module {
+ public:
+  /// @param bus, server  borrowed; must outlive the node.
+  /// @param session_folder  where the assessor leaves extrinsic.yaml.
+  DashboardNode(const Rig& rig,
+                Bus* bus,
+                DashboardServer* server,
+                const std::filesystem::path& session_folder);
+
+  std::string Name() const override { return "dashboard"; }
+  std::string State() const override;
+  bool Step() override;
+  std::optional<std::chrono::steady_clock::time_point> NextStep() const override;
+  void Republish() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void Subscribe();
+  void OnImage(const image_t& message);
+  void OnPoints(const pointcloud2_t& message);
+  void OnEvent(const event_t& message);
+  void SendCommand(const PageRequest& request);
+
+  void ShowSamples();
+  void ShowResult();
+  void OfferExports();
+  std::vector<BoardSample> TakenSamples() const;
+  std::optional<Eigen::Isometry3d> Extrinsic() const;
+  std::string WorkingOn() const;
+
+  /// Nothing is sent again that the pages know.
+  void Show(Slot slot, std::string json);
+  /// Calls `show` and shows what it gives; a message that contradicts itself is counted instead.
+  template <typename Shower>
+  void Try(const Shower& show);
+
+  Rig rig_;
+  Bus& bus_;
+  DashboardServer& server_;
+  std::filesystem::path result_file_;
+  std::array<std::string, kNumSlots> shown_;
+  Clock::time_point next_image_;
+  Clock::time_point next_cloud_;
+  Heartbeats heartbeats_;
+  std::deque<CountedEvent> events_;  ///< The newest first.
+  bool is_state_new_ = false;        ///< Samples or what is made of them changed.
+  std::optional<samples_t> samples_;
+  std::optional<voq_sets_t> sets_;
+  std::optional<extrinsic_averaged_t> averaged_;
+  std::optional<extrinsic_refined_t> refined_;
+  std::optional<assessment_t> assessment_;
+  std::vector<std::string> exports_;  ///< Names of the files on offer...
+  std::string exports_sha256_;        ///< ...and of which samples they are.
+};
+
+}  // namespace voqcal

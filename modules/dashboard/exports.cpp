@@ -1,0 +1,43 @@
+#include "dashboard/exports.hpp"
+
+#include <stdexcept>
+
+#include "rig/atomic_file.hpp"
+#include "rig/extrinsic_text.hpp"
+#include "rig/result_file.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr char kText[] = "text/plain; charset=utf-8";
+
+/// The ending by which other programs know the format.
+std::string EndingOf(const std::string& format) {
+  if (format == "urdf") return ".urdf";
+  if (format == "bot_frames") return ".cfg";
+  if (format == "mrcal") return ".cameramodel";
+  const bool is_command = format.compare(0, 3, "ros") == 0;
+  return is_command ? ".txt" : ".yaml";
+}
+
+}  // namespace
+
+std::map<std::string, StaticFile> ExportsOf(const std::filesystem::path& result_file,
+                                            const CameraModel& camera) {
+  std::map<std::string, StaticFile> exports;
+  ExportedExtrinsic extrinsic;
+  extrinsic.T_camera_lidar = ReadExtrinsic(result_file);
+  extrinsic.camera = camera;
+  exports["extrinsic.yaml"] = {kText, ReadWholeFile(result_file), true};
+  for (const std::string& format : ExportFormats()) {
+    try {
+      exports["extrinsic_" + format + EndingOf(format)] = {
+          kText, ExtrinsicText(format, extrinsic), true};
+    } catch (const std::invalid_argument&) {
+      continue;  // mrcal has no fisheye
+    }
+  }
+  return exports;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,84 @@
+#include <string>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "dashboard/access.hpp"
+#include "dashboard/dashboard_node.hpp"
+#include "dashboard/page_files.hpp"
+#include "dashboard/server.hpp"
+#include "messaging/bus.hpp"
+#include "messaging/process.hpp"
+#include "messaging/spin.hpp"
+#include "rig/rig.hpp"
+#include "rig/session.hpp"
+
+namespace voqcal {
+namespace {
+
+namespace ip = boost::asio::ip;
+
+/// Where others reach this host, for a server that listens at every address: what the kernel would
+/// send from. Nothing is sent.
+ip::address OutwardAddress(const ip::address& any) {
+  boost::asio::io_context context;
+  ip::udp::socket socket(context);
+  boost::system::error_code error;
+  const char* const example = any.is_v6() ? "2001:db8::1" : "192.0.2.1";  // RFC 3849, RFC 5737
+  socket.connect({ip::make_address(example), 9}, error);
+  return error ? ip::make_address(any.is_v6() ? "::1" : "127.0.0.1")
+               : socket.local_endpoint().address();
+}
+
+std::string PageAddress(const DashboardOptions& options,
+                        const DashboardServer& server,
+                        const std::string& token) {
+  ip::address address = ip::make_address(options.address);
+  if (address.is_unspecified()) address = OutwardAddress(address);
+  const std::string host = address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
+  return "http://" + host + ":" + std::to_string(server.port()) + "/" + token + "/";
+}
+
+/// The address lets its reader command the rig: it is shown to who sits at the terminal, and else
+/// lies in a file that its owner alone may read.
+void TellAddress(const std::string& address, const std::filesystem::path& file) {
+  SaveAddress(file, address);
+  spdlog::info("the page: {}", isatty(STDERR_FILENO) != 0 ? address : "see " + file.string());
+}
+
+void Run(const ProcessArgs& args) {
+  const Rig rig = LoadRig(args.rig_path);
+  const std::filesystem::path session = SessionFolder(args.session_dir, rig);
+  std::filesystem::create_directories(session);
+  const std::filesystem::path address_file = session / "dashboard_url.txt";
+
+  ServerOptions options;
+  options.address = rig.dashboard.address;
+  options.port = static_cast<std::uint16_t>(rig.dashboard.port);
+  options.host_name = rig.dashboard.host_name;
+  options.token = TokenOfSession(address_file);
+  options.files = PageFiles();
+
+  // The page can be opened before the module hears anything: tools/up waits for the latter only.
+  DashboardServer server(options);
+  TellAddress(PageAddress(rig.dashboard, server, options.token), address_file);
+  Bus bus(args.lcm_url.value_or(rig.lcm_url));
+  DashboardNode node(rig, &bus, &server, session);
+  if (!ip::make_address(options.address).is_loopback()) {
+    spdlog::warn("the page can be reached over the network, without encryption: {}",
+                 options.address);
+  }
+  Spin(bus, node, rig.channels.module_status);
+  spdlog::info(node.Summary());
+}
+
+}  // namespace
+}  // namespace voqcal
+
+int main(int argc, char** argv) {
+  const voqcal::ProcessInfo info{
+      "dashboard", "Serves a web page that shows the session and takes commands: CALIB_COMMAND."};
+  return voqcal::RunProcess(argc, argv, info, voqcal::Run);
+}

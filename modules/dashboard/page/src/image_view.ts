@@ -1,0 +1,126 @@
+// The live image with what was found in it.
+
+import { rangeColour } from "./colours.ts";
+import { NOT_SEEN, type CameraBoard, type CloudFrame, type Guidance, type ImageFrame } from "./protocol.ts";
+
+/** Corners are drawn on images that are at most so much older or newer. */
+const MAX_OFFSET_US = 300_000;
+
+export class ImageView {
+  private bitmap: ImageBitmap | null = null;
+  private frame: ImageFrame | null = null;
+  private cloud: CloudFrame | null = null;
+  private board: CameraBoard | null = null;
+  private guidance: Guidance | null = null;
+  private isDrawing = false;
+  private readonly context: CanvasRenderingContext2D;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly hasPoints: HTMLInputElement,
+  ) {
+    this.context = canvas.getContext("2d")!;
+    hasPoints.addEventListener("change", () => this.draw());
+  }
+
+  /** Resolves once the image is on the screen. */
+  async show(frame: ImageFrame): Promise<void> {
+    const bitmap = await createImageBitmap(frame.data);
+    this.bitmap?.close();
+    this.bitmap = bitmap;
+    this.frame = frame;
+    await this.draw();
+  }
+
+  showCloud(cloud: CloudFrame): void {
+    this.cloud = cloud;
+    void this.draw();
+  }
+
+  showBoard(board: CameraBoard): void {
+    this.board = board;
+    void this.draw();
+  }
+
+  showGuidance(guidance: Guidance): void {
+    this.guidance = guidance;
+    void this.draw();
+  }
+
+  private draw(): Promise<void> {
+    return new Promise((resolve) => {
+      const isAsked = this.isDrawing;
+      this.isDrawing = true;
+      requestAnimationFrame(() => {
+        if (!isAsked) {
+          this.isDrawing = false;
+          this.drawNow();
+        }
+        resolve();
+      });
+    });
+  }
+
+  private drawNow(): void {
+    const { bitmap, frame, canvas, context } = this;
+    if (!bitmap || !frame) return;
+    if (canvas.width !== bitmap.width) canvas.width = bitmap.width;
+    if (canvas.height !== bitmap.height) canvas.height = bitmap.height;
+    context.drawImage(bitmap, 0, 0);
+    const scale = bitmap.width / frame.width;
+    if (this.hasPoints.checked) this.drawPoints(scale);
+    this.drawGhost(scale);
+    this.drawBoard(scale);
+  }
+
+  private drawPoints(scale: number): void {
+    const pixels = this.cloud?.pixels;
+    if (!pixels) return;
+    const { positions_m } = this.cloud!;
+    const size = Math.max(2, this.canvas.width / 320);
+    for (let i = 0; i < pixels.length / 2; ++i) {
+      const u = pixels[2 * i]!;
+      if (u === NOT_SEEN) continue;
+      const range_m = Math.hypot(positions_m[3 * i]!, positions_m[3 * i + 1]!, positions_m[3 * i + 2]!);
+      this.context.fillStyle = rangeColour(range_m);
+      this.context.fillRect(scale * u - size / 2, scale * pixels[2 * i + 1]! - size / 2, size, size);
+    }
+  }
+
+  private drawBoard(scale: number): void {
+    const { board, frame, context } = this;
+    if (!board || board.miss || Math.abs(board.utime - frame!.utime) > MAX_OFFSET_US) return;
+    if (board.outline_px) this.drawPolygon(board.outline_px, scale, "#31d158", []);
+    context.fillStyle = "#31d158";
+    context.strokeStyle = "#003b12";
+    context.lineWidth = 1;
+    const radius = Math.max(2.5, this.canvas.width / 260);
+    for (const [u, v] of board.corners_px ?? []) {
+      context.beginPath();
+      context.arc(scale * (u + 0.5), scale * (v + 0.5), radius, 0, 2 * Math.PI);
+      context.fill();
+      context.stroke();
+    }
+  }
+
+  private drawGhost(scale: number): void {
+    const corners = this.guidance?.corners_px;
+    if (!corners || this.guidance!.is_enough) return;
+    if (corners.flat().some((value) => value === null)) return;
+    this.drawPolygon(corners as number[][], scale, "#ffd60a", [8, 5]);
+    this.context.fillStyle = "rgb(255 214 10 / 22%)";
+    this.context.fill();
+  }
+
+  private drawPolygon(corners: number[][], scale: number, colour: string, dash: number[]): void {
+    const { context } = this;
+    context.beginPath();
+    for (const [u, v] of corners) context.lineTo(scale * (u! + 0.5), scale * (v! + 0.5));
+    context.closePath();
+    context.setLineDash(dash);
+    context.lineWidth = Math.max(2, this.canvas.width / 320);
+    context.strokeStyle = colour;
+    context.stroke();
+    context.setLineDash([]);
+  }
+}

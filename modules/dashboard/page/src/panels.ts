@@ -1,0 +1,149 @@
+// The parts of the page that are text: guidance, estimate, samples, rejects, modules.
+
+import { byId, element, number, setText } from "./dom.ts";
+import type { Events, Guidance, Modules, Result, Samples } from "./protocol.ts";
+
+export function showGuidance(guidance: Guidance): void {
+  const { unit, tolerance, min_range_m, max_range_m, worst_error, predicted_worst_error } = guidance;
+  const advice = guidance.problem || guidance.advice;
+  setText("advice", advice.charAt(0).toUpperCase() + advice.slice(1));
+  byId("guidance").dataset.state = guidance.is_enough ? "enough" : "more";
+  const where = `between ${min_range_m} and ${max_range_m} m`;
+  const known = worst_error !== null;
+  const now = known
+    ? `Expected error at worst ${number(worst_error, 1, unit)} ${where}; wanted ${number(tolerance, 1, unit)}.`
+    : `Wanted: at most ${number(tolerance, 1, unit)} of error ${where}.`;
+  const next = guidance.is_enough || predicted_worst_error === null || !known
+    ? ""
+    : ` One more sample there: ${number(predicted_worst_error, 1, unit)}.`;
+  setText("advice-why", guidance.problem ? "" : now + next);
+  const meter = byId<HTMLProgressElement>("enough-meter");
+  meter.hidden = !known;
+  meter.value = known ? Math.min(1, tolerance / Math.max(worst_error, tolerance, 1e-9)) : 0;
+}
+
+export function showResult(result: Result): void {
+  byId("progress").hidden = result.working_on === "";
+  setText("progress-text", result.working_on);
+  const verdict = result.verdict;
+  byId("verdict").dataset.grade = verdict?.grade ?? "none";
+  setText("verdict", verdict?.headline ?? (result.problem ? `No result: ${result.problem}` : "No result yet"));
+  byId("estimate").hidden = verdict === undefined;
+  showExports(result.exports ?? []);
+  if (!verdict) return;
+  setText("translation", `${list(result.translation_m!.map((metres) => 1e3 * metres), 1)} mm`);
+  setText("translation-sigma", `± ${list(result.sigma_mm!, 1)} mm`);
+  setText("quaternion", list(result.quaternion_xyzw!, 5));
+  setText("rotation-sigma", `± ${list(result.sigma_deg!, 3)} deg`);
+  const { centre_mm, centre_px } = result.held_out!;
+  setText(
+    "held-out",
+    `${number(centre_mm.mean, 1, "mm")} (largest ${number(centre_mm.max, 1, "mm")}), ${number(centre_px.mean, 2, "px")}`,
+  );
+  setText(
+    "predicted",
+    result.predicted!.map((each) => `${number(each.corner_mm, 0, "mm")} at ${each.range_m} m`).join(", "),
+  );
+  setText("made-from", `${result.num_samples} samples, by ${result.method}${result.is_current ? "" : "; being renewed"}`);
+  byId("checks").replaceChildren(
+    ...verdict.checks.map((check) =>
+      element(
+        "li",
+        { "data-grade": check.grade },
+        element("strong", {}, `${check.name}: ${check.grade}. `),
+        check.text,
+      ),
+    ),
+  );
+}
+
+function list(values: (number | null)[], digits: number): string {
+  return values.map((value) => value?.toFixed(digits) ?? "?").join("  ");
+}
+
+function showExports(names: string[]): void {
+  const list = byId("exports");
+  if (list.dataset.names === names.join()) return;
+  list.dataset.names = names.join();
+  byId<HTMLButtonElement>("export").disabled = names.length === 0;
+  list.replaceChildren(
+    ...names.map((name) => element("li", {}, element("a", { href: `export/${name}`, download: name }, name))),
+  );
+}
+
+function facing(degrees: number, positive: string, negative: string): string {
+  const whole = Math.round(Math.abs(degrees));
+  return whole === 0 ? "" : `${whole}° ${degrees > 0 ? positive : negative}`;
+}
+
+export function showSamples({ samples, is_finished }: Samples, discard: (id: number) => void): void {
+  setText("sample-count", `${samples.length}`);
+  setText("finished", is_finished ? "Finished. Capture goes on with it." : "");
+  byId("no-samples").hidden = samples.length > 0;
+  const focused = document.activeElement?.closest("[data-sample]")?.getAttribute("data-sample");
+  byId("samples").replaceChildren(
+    ...[...samples].reverse().map((sample) => {
+      const turned = [facing(sample.faces_right_deg, "right", "left"), facing(sample.faces_up_deg, "up", "down")];
+      const button = element(
+        "button",
+        { type: "button", class: "quiet", "aria-label": `Discard sample ${sample.id}` },
+        "Discard",
+      );
+      button.addEventListener("click", () => discard(sample.id));
+      const notes = [...(sample.left_out ? [`left out: ${sample.left_out}`] : []), ...sample.warnings];
+      return element(
+        "li",
+        { "data-sample": `${sample.id}`, class: sample.left_out ? "left-out" : "" },
+        element("b", {}, `${sample.id}`),
+        element(
+          "span",
+          { class: "facts" },
+          element("span", {}, number(sample.distance_m, 2, "m")),
+          element("span", {}, `e_dim ${number(sample.e_dim_mm, 0, "mm")}`),
+          element("span", {}, `faces ${turned.filter(Boolean).join(", ") || "the camera"}`),
+          ...(sample.held_out_mm === undefined ? [] : [element("span", {}, `error ${number(sample.held_out_mm, 1, "mm")}`)]),
+          ...(notes.length > 0 ? [element("span", { class: "reason" }, notes.join("; "))] : []),
+        ),
+        button,
+      );
+    }),
+  );
+  if (focused) byId("samples").querySelector<HTMLElement>(`[data-sample="${focused}"] button`)?.focus();
+}
+
+export function eventText(event: Events["events"][number]): string {
+  const sample = event.sample_id > 0 ? ` ${event.sample_id}` : "";
+  const what: Record<string, string> = {
+    accepted: `Sample${sample} taken`,
+    discarded: `Sample${sample} discarded`,
+    finished: "Finished",
+    reset: "All samples taken away",
+    rejected: "Not taken",
+  };
+  return (what[event.event] ?? event.event) + (event.reason ? `: ${event.reason}` : "");
+}
+
+export function showEvents({ events }: Events): void {
+  byId("events").replaceChildren(
+    ...events.slice(0, 15).map((event) =>
+      element(
+        "li",
+        { class: event.event },
+        eventText(event),
+        ...(event.count > 1 ? [element("span", { class: "count" }, ` ${event.count}×`)] : []),
+      ),
+    ),
+  );
+}
+
+export function showModules({ modules }: Modules): void {
+  const bad = modules.filter((module) => module.health !== "good" || module.num_lost > 0);
+  setText("modules-summary", bad.length === 0 ? `All ${modules.length} modules run` : bad.map((module) =>
+    module.health === "good" ? `${module.name} lost ${module.num_lost} messages` : `${module.name} is ${module.health}`).join("; "));
+  byId("modules-panel").dataset.state = bad.length === 0 ? "good" : "bad";
+  byId("modules").replaceChildren(
+    ...modules.map((module) =>
+      element("li", { "data-health": module.health }, element("b", {}, module.name), ` ${module.state}`),
+    ),
+  );
+}

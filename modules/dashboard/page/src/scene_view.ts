@@ -1,0 +1,135 @@
+// The sweep in three dimensions, with the board found in it, every sample and the next pose.
+
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { rangeHue, themeColour } from "./colours.ts";
+import type { CloudFrame, Guidance, LidarBoard, Point3, Samples } from "./protocol.ts";
+
+const UP = new THREE.Vector3(0, 0, 1);
+
+export class SceneView {
+  private readonly scene = new THREE.Scene();
+  private readonly camera = new THREE.PerspectiveCamera(55, 1, 0.05, 500);
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly controls: OrbitControls;
+  private readonly points = new THREE.Points(
+    new THREE.BufferGeometry(),
+    new THREE.PointsMaterial({ size: 2.2, sizeAttenuation: false, vertexColors: true }),
+  );
+  private readonly board = new THREE.Group();
+  private readonly samples = new THREE.Group();
+  private readonly ghost = new THREE.Group();
+  private isAsked = false;
+
+  constructor(private readonly holder: HTMLElement) {
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    holder.append(this.renderer.domElement);
+    this.renderer.domElement.tabIndex = 0;
+    this.renderer.domElement.setAttribute("role", "img");
+    this.renderer.domElement.setAttribute(
+      "aria-label",
+      "The lidar's sweep with the board, the samples and the next pose. Drag to turn, pinch to zoom, arrow keys to move.",
+    );
+    this.points.frustumCulled = false;
+    this.scene.add(this.points, this.board, this.samples, this.ghost, new THREE.AxesHelper(0.5));
+    this.camera.up.copy(UP);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.listenToKeyEvents(this.renderer.domElement);
+    this.controls.addEventListener("change", () => this.draw());
+    this.lookAlong();
+    new ResizeObserver(() => this.resize()).observe(holder);
+  }
+
+  /** From behind and above the lidar, along its x axis, where cameras usually look. */
+  lookAlong(): void {
+    this.camera.position.set(-3.5, 1.2, 2.4);
+    this.controls.target.set(2.5, 0, 0);
+    this.controls.update();
+    this.draw();
+  }
+
+  showCloud(cloud: CloudFrame): void {
+    const { positions_m } = cloud;
+    const colours = new Float32Array(positions_m.length);
+    const colour = new THREE.Color();
+    for (let i = 0; i < positions_m.length; i += 3) {
+      const range_m = Math.hypot(positions_m[i]!, positions_m[i + 1]!, positions_m[i + 2]!);
+      colour.setHSL(rangeHue(range_m), 0.9, 0.5).toArray(colours, i);
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(positions_m, 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+    this.points.geometry.dispose();
+    this.points.geometry = geometry;
+    this.draw();
+  }
+
+  showBoard(board: LidarBoard): void {
+    this.replace(this.board, board.corners_lidar_m ? [plate(board.corners_lidar_m, "#31d158", 0.45)] : []);
+  }
+
+  showSamples({ samples }: Samples): void {
+    const line = themeColour("accent");
+    const bad = themeColour("bad");
+    this.replace(
+      this.samples,
+      samples.map((sample) => outline(sample.corners_lidar_m, sample.left_out ? bad : line)),
+    );
+  }
+
+  showGuidance(guidance: Guidance): void {
+    const corners = guidance.is_enough ? undefined : guidance.corners_lidar_m;
+    this.replace(this.ghost, corners ? [plate(corners, "#ffd60a", 0.35), outline(corners, "#ffd60a")] : []);
+  }
+
+  private replace(group: THREE.Group, children: THREE.Object3D[]): void {
+    for (const child of group.children) {
+      const { geometry, material } = child as THREE.Mesh;
+      geometry.dispose();
+      (material as THREE.Material).dispose();
+    }
+    group.clear();
+    if (children.length > 0) group.add(...children);
+    this.draw();
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.holder;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  private draw(): void {
+    if (this.isAsked) return;
+    this.isAsked = true;
+    requestAnimationFrame(() => {
+      this.isAsked = false;
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
+}
+
+function geometryOf(corners: Point3[]): THREE.BufferGeometry {
+  return new THREE.BufferGeometry().setFromPoints(corners.map((corner) => new THREE.Vector3(...corner)));
+}
+
+function outline(corners: Point3[], colour: string): THREE.LineLoop {
+  return new THREE.LineLoop(geometryOf(corners), new THREE.LineBasicMaterial({ color: colour }));
+}
+
+function plate(corners: Point3[], colour: string, opacity: number): THREE.Mesh {
+  const geometry = geometryOf(corners);
+  geometry.setIndex([0, 1, 2, 0, 2, 3]);
+  const material = new THREE.MeshBasicMaterial({
+    color: colour,
+    opacity,
+    transparent: true,
+    side: THREE.DoubleSide,
+    depthWrite: false,
+  });
+  return new THREE.Mesh(geometry, material);
+}

@@ -1,0 +1,24 @@
+#include "dashboard/page_files.hpp"
+
+#include <filesystem>
+
+#include "rig/atomic_file.hpp"
+
+namespace voqcal {
+
+std::map<std::string, StaticFile> PageFiles() {
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
+  const auto folder = program.parent_path().parent_path() / "share" / "dashboard";
+  if (!std::filesystem::exists(folder / "dashboard.js")) {
+    return {{"",
+             {"text/plain; charset=utf-8",
+              "The page was not built: tools/setup installs Node.js and its packages, tools/build "
+              "then makes the page.\n"}}};
+  }
+  return {
+      {"", {"text/html; charset=utf-8", ReadWholeFile(folder / "index.html")}},
+      {"dashboard.css", {"text/css; charset=utf-8", ReadWholeFile(folder / "dashboard.css")}},
+      {"dashboard.js", {"text/javascript; charset=utf-8", ReadWholeFile(folder / "dashboard.js")}}};
+}
+
+}  // namespace voqcal

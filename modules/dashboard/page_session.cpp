@@ -1,0 +1,105 @@
+#include "dashboard/page_session.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace voqcal {
+namespace {
+
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+
+// A phone that left the network is noticed after this long, by unanswered pings.
+constexpr std::chrono::seconds kIdleTimeout{20};
+constexpr std::chrono::seconds kHandshakeTimeout{10};
+
+FramePtr Refusal(const std::string& reason) {
+  return TextFrame(nlohmann::json{{"kind", "refused"}, {"reason", reason}}.dump());
+}
+
+}  // namespace
+
+PageSession::PageSession(boost::asio::ip::tcp::socket socket, std::shared_ptr<Hub> hub)
+    : stream_(std::move(socket)), hub_(std::move(hub)) {
+  hub_->pages.insert(this);
+  ++hub_->num_pages;
+}
+
+PageSession::~PageSession() {
+  hub_->pages.erase(this);
+  --hub_->num_pages;
+}
+
+void PageSession::Start(const beast::http::request<beast::http::empty_body>& upgrade) {
+  stream_.read_message_max(kMaxRequestBytes);
+  stream_.set_option(websocket::stream_base::timeout{kHandshakeTimeout, kIdleTimeout, true});
+  for (std::size_t slot = 0; slot < kNumSlots; ++slot)
+    has_new_[slot] = hub_->newest[slot] != nullptr;
+  stream_.async_accept(upgrade, [self = shared_from_this()](beast::error_code error) {
+    if (error) return;
+    self->SendNext();
+    self->Read();
+  });
+}
+
+void PageSession::HasNew(Slot slot) {
+  has_new_[static_cast<std::size_t>(slot)] = true;
+  if (stream_.is_open()) SendNext();
+}
+
+void PageSession::Read() {
+  stream_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+    self->OnRead(error);
+  });
+}
+
+// Too long a message ends the connection: Beast closes it with code 1009, "message too big".
+void PageSession::OnRead(beast::error_code error) {
+  if (error) return;
+  Take(beast::buffers_to_string(buffer_.data()));
+  buffer_.consume(buffer_.size());
+  Read();
+}
+
+void PageSession::Take(const std::string& text) {
+  const auto request =
+      stream_.got_text() ? ParsePageRequest(text) : std::string("a request is a message of text");
+  if (!request) {
+    refusal_ = Refusal(request.error());
+  } else if (request->command.empty()) {
+    is_drawing_[static_cast<std::size_t>(request->shown)] = false;
+  } else {
+    hub_->commands.Add(*request);
+  }
+  SendNext();
+}
+
+void PageSession::SendNext() {
+  if (sending_) return;
+  sending_ = NextFrame();
+  if (!sending_) return;
+  stream_.text(!sending_->is_binary);
+  stream_.async_write(boost::asio::buffer(sending_->bytes),
+                      [self = shared_from_this()](beast::error_code error, std::size_t) {
+                        self->sending_.reset();
+                        if (!error) self->SendNext();
+                      });
+}
+
+// The slots take turns, so that none waits for the others to fall silent.
+FramePtr PageSession::NextFrame() {
+  if (refusal_) return std::exchange(refusal_, nullptr);
+  for (std::size_t i = 1; i <= kNumSlots; ++i) {
+    const std::size_t slot = (last_slot_ + i) % kNumSlots;
+    if (!has_new_[slot] || is_drawing_[slot]) continue;
+    has_new_[slot] = false;
+    is_drawing_[slot] = IsLarge(static_cast<Slot>(slot));
+    last_slot_ = slot;
+    return hub_->newest[slot];
+  }
+  return nullptr;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,269 @@
+#include "dashboard/page_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "core/selection/voq.hpp"
+#include "dashboard/slot.hpp"
+#include "messaging/convert_board.hpp"
+#include "rig/extrinsic_text.hpp"
+
+namespace voqcal {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kDegPerRad = 180.0 / M_PI;
+
+Json Of(Slot slot) { return {{"kind", ToString(slot)}}; }
+
+// Text of a message may be in any encoding; JSON is UTF-8.
+std::string Text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+template <typename Vector>
+Json List(const Vector& values) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(value);
+  return array;
+}
+
+Json Corners(const BoardPose& pose) {
+  Json array = Json::array();
+  for (const Eigen::Vector3d& corner : pose.corners_m) array.push_back(List(corner));
+  return array;
+}
+
+/// Where the camera sees the outline; null where a corner is behind it.
+Json Outline(const BoardPose& pose_camera, const CameraModel& camera) {
+  Json array = Json::array();
+  for (const Eigen::Vector3d& corner : pose_camera.corners_m) {
+    if (!corner.allFinite() || !camera.IsInFront(corner)) return nullptr;
+    array.push_back(List(Eigen::Vector2d(camera.Project(corner))));
+  }
+  return array;
+}
+
+template <std::size_t kRows, std::size_t kColumns>
+Json Table(const double (&values)[kRows][kColumns]) {
+  Json array = Json::array();
+  for (const auto& row : values) array.push_back(List(row));
+  return array;
+}
+
+/// What became of each sample.
+struct Fates {
+  std::map<std::int64_t, std::string> left_out;  ///< And why.
+  std::map<std::int64_t, double> held_out_mm;    ///< Of those that were used.
+};
+
+Fates FatesOf(const extrinsic_averaged_t* averaged, const assessment_t* assessment) {
+  Fates fates;
+  if (averaged != nullptr) {
+    for (std::size_t i = 0; i < averaged->inconsistent_ids.size(); ++i) {
+      fates.left_out[averaged->inconsistent_ids[i]] = averaged->inconsistent_reasons[i];
+    }
+  }
+  if (assessment != nullptr) {
+    for (std::size_t i = 0; i < assessment->sample_ids.size(); ++i) {
+      fates.held_out_mm[assessment->sample_ids[i]] = assessment->held_out_centre_mm[i];
+    }
+  }
+  return fates;
+}
+
+Json SamplePart(const BoardSample& sample, const Fates& fates, const Rig& rig) {
+  const Eigen::Vector3d& normal = sample.camera.pose.normal;
+  Json part = {{"id", sample.id},
+               {"num_frames", sample.num_frames},
+               {"distance_m", sample.camera.pose.centre_m.norm()},
+               {"e_dim_mm", BoardDimensionErrorMm(sample.lidar.edge_lengths_m, rig.board)},
+               // Which way the board faces, seen by the camera: to the right, and up.
+               {"faces_right_deg", kDegPerRad * std::atan2(normal.x(), -normal.z())},
+               {"faces_up_deg", kDegPerRad * std::atan2(-normal.y(), -normal.z())},
+               {"corners_lidar_m", Corners(sample.lidar.pose)},
+               {"outline_px", Outline(sample.camera.pose, rig.camera)},
+               {"warnings", Json::array()}};
+  for (const SightingWarning& warning : sample.camera.warnings) {
+    part["warnings"].push_back(warning.reason + ": " + warning.detail);
+  }
+  const auto left_out = fates.left_out.find(sample.id);
+  const auto held_out = fates.held_out_mm.find(sample.id);
+  if (left_out != fates.left_out.end()) part["left_out"] = left_out->second;
+  if (held_out != fates.held_out_mm.end()) part["held_out_mm"] = held_out->second;
+  return part;
+}
+
+Json Part(const spread_t& spread) {
+  return {{"mean", spread.mean}, {"std", spread.std}, {"max", spread.max}};
+}
+
+Json Part(const Verdict& verdict) {
+  Json checks = Json::array();
+  for (const VerdictCheck& check : verdict.checks) {
+    checks.push_back(
+        {{"name", check.name}, {"grade", ToString(check.grade)}, {"text", check.text}});
+  }
+  return {{"grade", ToString(verdict.grade)}, {"headline", verdict.headline}, {"checks", checks}};
+}
+
+/// 1 sigma of three of the covariance's axes.
+Json Sigma(const extrinsic_refined_t& refined, int first, double scale) {
+  Json sigma = Json::array();
+  for (int i = first; i < first + 3; ++i)
+    sigma.push_back(scale * std::sqrt(refined.covariance[i][i]));
+  return sigma;
+}
+
+double LargestSigma(const extrinsic_refined_t& refined, int first) {
+  double variance = 0;
+  for (int i = first; i < first + 3; ++i) variance = std::max(variance, refined.covariance[i][i]);
+  return std::sqrt(variance);
+}
+
+SceneVerdict SceneVerdictOf(const std::string& text) {
+  for (const SceneVerdict each : {SceneVerdict::kAgrees, SceneVerdict::kDisagrees}) {
+    if (text == ToString(each)) return each;
+  }
+  return SceneVerdict::kNotJudged;
+}
+
+}  // namespace
+
+std::string RigJson(const Rig& rig) {
+  Json json = Of(Slot::kRig);
+  json["name"] = rig.name;
+  json["camera"] = {{"width_px", rig.camera.width_px}, {"height_px", rig.camera.height_px}};
+  return Text(json);
+}
+
+std::string SamplesJson(const samples_t& message,
+                        const std::vector<BoardSample>& samples,
+                        const extrinsic_averaged_t* averaged,
+                        const assessment_t* assessment,
+                        const Rig& rig) {
+  const Fates fates = FatesOf(averaged, assessment);
+  Json json = Of(Slot::kSamples);
+  json["revision"] = message.revision;
+  json["is_finished"] = message.is_finished != 0;
+  json["samples"] = Json::array();
+  for (const BoardSample& sample : samples)
+    json["samples"].push_back(SamplePart(sample, fates, rig));
+  return Text(json);
+}
+
+std::string ResultJson(const extrinsic_refined_t& refined,
+                       const assessment_t& assessment,
+                       const Verdict& verdict,
+                       bool is_current,
+                       const std::string& working_on,
+                       const std::vector<std::string>& exports) {
+  Json json = Of(Slot::kResult);
+  json["working_on"] = working_on;
+  json["is_current"] = is_current;
+  json["method"] = refined.method;
+  json["num_samples"] = refined.num_samples;
+  json["translation_m"] = List(refined.T_camera_lidar.translation_m);
+  json["quaternion_xyzw"] = List(refined.T_camera_lidar.quaternion_xyzw);
+  json["sigma_deg"] = Sigma(refined, 0, kDegPerRad);
+  json["sigma_mm"] = Sigma(refined, 3, 1e3);
+  json["held_out"] = {{"centre_px", Part(assessment.refined_held_out.centre_px)},
+                      {"centre_mm", Part(assessment.refined_held_out.centre_mm)}};
+  json["predicted"] = Json::array();
+  for (const predicted_error_t& each : assessment.predicted) {
+    json["predicted"].push_back({{"range_m", each.range_m}, {"corner_mm", each.corner_mm}});
+  }
+  json["verdict"] = Part(verdict);
+  json["exports"] = exports;
+  return Text(json);
+}
+
+std::string NoResultJson(const std::string& problem, const std::string& working_on) {
+  Json json = Of(Slot::kResult);
+  json["problem"] = problem;
+  json["working_on"] = working_on;
+  return Text(json);
+}
+
+std::string LidarBoardJson(const lidar_board_t& message) {
+  Json json = Of(Slot::kLidarBoard);
+  json["utime"] = message.utime;
+  json["miss"] = message.miss;
+  if (!message.candidates.empty()) {
+    json["corners_lidar_m"] = Table(message.candidates[0].pose.corners_m);
+    json["num_points"] = message.candidates[0].num_points;
+  }
+  return Text(json);
+}
+
+std::string CameraBoardJson(const camera_board_t& message, const CameraModel& camera) {
+  Json json = Of(Slot::kCameraBoard);
+  json["utime"] = message.utime;
+  json["miss"] = message.miss;
+  json["detail"] = message.detail;
+  if (!message.miss.empty()) return Text(json);
+  const CameraBoard board = FromMessage(message);
+  json["outline_px"] = Outline(board.pose, camera);
+  json["corners_px"] = Json::array();
+  for (const Eigen::Vector2d& corner : board.corners_px) {
+    if (corner.allFinite()) json["corners_px"].push_back(List(corner));
+  }
+  json["warnings"] = Json::array();
+  for (const warning_t& warning : message.warnings) json["warnings"].push_back(warning.reason);
+  return Text(json);
+}
+
+std::string GuidanceJson(const next_pose_t& message) {
+  Json json = Of(Slot::kGuidance);
+  json["problem"] = message.problem;
+  json["advice"] = message.advice;
+  json["unit"] = message.unit;
+  json["tolerance"] = message.tolerance;
+  json["min_range_m"] = message.min_range_m;
+  json["max_range_m"] = message.max_range_m;
+  json["worst_error"] = message.worst_error;
+  json["predicted_worst_error"] = message.predicted_worst_error;
+  json["is_enough"] = message.is_enough != 0;
+  if (!message.problem.empty()) return Text(json);
+  json["corners_px"] = Table(message.corners_px);
+  if (message.is_lidar_known != 0) json["corners_lidar_m"] = Table(message.corners_lidar_m);
+  return Text(json);
+}
+
+std::string EventsJson(const std::deque<CountedEvent>& events) {
+  Json json = Of(Slot::kEvents);
+  json["events"] = Json::array();
+  for (const CountedEvent& each : events) {
+    json["events"].push_back({{"seq", each.event.seq},
+                              {"event", each.event.kind},
+                              {"sample_id", each.event.sample_id},
+                              {"reason", each.event.reason},
+                              {"count", each.count}});
+  }
+  return Text(json);
+}
+
+Evidence EvidenceOf(const extrinsic_refined_t& refined,
+                    const assessment_t& assessment,
+                    int num_samples) {
+  Evidence evidence;
+  evidence.held_out_mm = assessment.refined_held_out.centre_mm.mean;
+  evidence.in_sample_mm = assessment.refined_in_sample.centre_mm.mean;
+  evidence.normal_deg = assessment.refined_held_out.normal_deg.mean;
+  evidence.sigma_deg = kDegPerRad * LargestSigma(refined, 0);
+  evidence.sigma_mm = 1e3 * LargestSigma(refined, 3);
+  evidence.num_used = assessment.num_samples;
+  evidence.num_samples = num_samples;
+  evidence.num_cells = assessment.num_image_cells;
+  evidence.scene = SceneVerdictOf(assessment.scene_check.verdict);
+  evidence.scene_reason = assessment.scene_check.reason;
+  if (!assessment.findings.empty()) evidence.likeliest_fault = assessment.findings[0].text;
+  return evidence;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "core/assessment/verdict.hpp"
+#include "core/board/board_sample.hpp"
+#include "rig/rig.hpp"
+#include "voqcal/assessment_t.hpp"
+#include "voqcal/camera_board_t.hpp"
+#include "voqcal/event_t.hpp"
+#include "voqcal/extrinsic_averaged_t.hpp"
+#include "voqcal/extrinsic_refined_t.hpp"
+#include "voqcal/lidar_board_t.hpp"
+#include "voqcal/next_pose_t.hpp"
+#include "voqcal/samples_t.hpp"
+
+namespace voqcal {
+
+// What the page is told, as JSON: pure functions. Every object has its slot's name as "kind";
+// numbers that are not finite become null; names end in their units.
+
+std::string RigJson(const Rig& rig);
+
+/// @param samples  of `message`, with the candidates that were chosen.
+/// @param averaged, assessment  of the same or earlier samples; null while there is none.
+std::string SamplesJson(const samples_t& message,
+                        const std::vector<BoardSample>& samples,
+                        const extrinsic_averaged_t* averaged,
+                        const assessment_t* assessment,
+                        const Rig& rig);
+
+/// The estimate with its uncertainty and verdict.
+/// @param is_current  whether it is of the newest samples.
+/// @param working_on  the stage that computes what is newer; empty if there is none.
+/// @param exports  names of the files that can be had.
+std::string ResultJson(const extrinsic_refined_t& refined,
+                       const assessment_t& assessment,
+                       const Verdict& verdict,
+                       bool is_current,
+                       const std::string& working_on,
+                       const std::vector<std::string>& exports);
+
+/// That there is no estimate, and why.
+std::string NoResultJson(const std::string& problem, const std::string& working_on);
+
+std::string LidarBoardJson(const lidar_board_t& message);
+std::string CameraBoardJson(const camera_board_t& message, const CameraModel& camera);
+std::string GuidanceJson(const next_pose_t& message);
+
+/// An event, and how often in a row it was the same.
+struct CountedEvent {
+  event_t event;
+  int count = 1;
+};
+/// @param events  the newest first.
+std::string EventsJson(const std::deque<CountedEvent>& events);
+
+/// What a verdict on these messages rests on.
+Evidence EvidenceOf(const extrinsic_refined_t& refined,
+                    const assessment_t& assessment,
+                    int num_samples);
+
+}  // namespace voqcal

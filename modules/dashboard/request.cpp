@@ -1,0 +1,57 @@
+#include "dashboard/request.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+namespace voqcal {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::array<const char*, 4> kCommands = {"capture", "discard", "finish", "reset"};
+
+Expected<PageRequest, std::string> ReadShown(const Json& json) {
+  if (json.size() != 1) return std::string("\"shown\" stands alone");
+  for (const Slot slot : {Slot::kImage, Slot::kCloud}) {
+    if (json["shown"] != ToString(slot)) continue;
+    PageRequest request;
+    request.shown = slot;
+    return request;
+  }
+  return std::string("\"shown\" must be \"image\" or \"cloud\"");
+}
+
+Expected<PageRequest, std::string> ReadCommand(const Json& json) {
+  PageRequest request;
+  if (json["command"].is_string()) request.command = json["command"].get<std::string>();
+  if (std::find(kCommands.begin(), kCommands.end(), request.command) == kCommands.end()) {
+    return std::string("\"command\" must be \"capture\", \"discard\", \"finish\" or \"reset\"");
+  }
+  const bool has_sample = json.contains("sample_id");
+  if (json.size() != (has_sample ? 2U : 1U)) return std::string("unknown keys beside \"command\"");
+  if (!has_sample) return request;
+  // Beyond 2^53 JavaScript's numbers are not exact.
+  constexpr std::int64_t kMaxId = std::int64_t{1} << 53U;
+  const Json& id = json["sample_id"];
+  if (request.command != "discard" || !id.is_number_unsigned() || id > kMaxId) {
+    return std::string("\"sample_id\" is the whole number of the sample to discard");
+  }
+  request.sample_id = id.get<std::int64_t>();
+  return request;
+}
+
+}  // namespace
+
+Expected<PageRequest, std::string> ParsePageRequest(std::string_view text) {
+  if (text.size() > kMaxRequestBytes) return std::string("the request is too long");
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) return std::string("the request is no JSON");
+  if (!json.is_object()) return std::string("the request is no JSON object");
+  if (json.contains("shown")) return ReadShown(json);
+  if (json.contains("command")) return ReadCommand(json);
+  return std::string("the request has neither \"command\" nor \"shown\"");
+}
+
+}  // namespace voqcal

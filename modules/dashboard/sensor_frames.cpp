@@ -1,0 +1,145 @@
+#include "dashboard/sensor_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "messaging/convert_image.hpp"
+
+namespace voqcal {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kJpegQuality = 75;
+constexpr std::int16_t kNotSeen = std::numeric_limits<std::int16_t>::min();
+
+/// By how much an image of this width is made smaller: 1, 2, 4 or 8, as JPEG decoders can.
+int Reduction(int width_px, int max_width_px) {
+  int factor = 1;
+  while (factor < 8 && width_px > factor * max_width_px) factor *= 2;
+  return factor;
+}
+
+/// Decoded at the smaller size at once, which costs a fraction of decoding it whole.
+cv::Mat DecodedSmall(const image_t& image, int factor) {
+  const int flags = factor == 2   ? cv::IMREAD_REDUCED_COLOR_2
+                    : factor == 4 ? cv::IMREAD_REDUCED_COLOR_4
+                                  : cv::IMREAD_REDUCED_COLOR_8;
+  cv::Mat small = cv::imdecode(image.data, flags | cv::IMREAD_IGNORE_ORIENTATION);
+  if (small.empty()) throw std::runtime_error("an image that cannot be decoded");
+  return small;
+}
+
+cv::Mat Small(const image_t& image, int factor) {
+  if (image.pixelformat == kPixelMjpeg && factor > 1) return DecodedSmall(image, factor);
+  const cv::Mat whole = FromMessage(image);
+  if (factor == 1) return whole;
+  cv::Mat small;
+  cv::resize(whole, small, {}, 1.0 / factor, 1.0 / factor, cv::INTER_AREA);
+  return small;
+}
+
+std::string Header(const image_t& image, const char* type) {
+  return Json{{"kind", ToString(Slot::kImage)},
+              {"utime", image.utime},
+              {"width", image.width},
+              {"height", image.height},
+              {"type", type}}
+      .dump();
+}
+
+/// Every point with a return, or a part of them that no scan pattern of the lidar can favour: the
+/// multiples of the golden ratio spread evenly over [0, 1), and so do any of their subsequences by
+/// equal steps.
+std::vector<Eigen::Vector3f> Thinned(const PointCloud& cloud_lidar_m, int max_points) {
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const double share = static_cast<double>(max_points) /
+                       static_cast<double>(std::max<std::size_t>(cloud_lidar_m.points.size(), 1));
+  std::vector<Eigen::Vector3f> thinned;
+  double phase = 0;
+  for (const LidarPoint& point : cloud_lidar_m.points) {
+    phase += kGoldenRatio;
+    if (phase >= 1) phase -= 1;
+    if (phase >= share) continue;
+    if (!point.position_m.allFinite() || point.position_m.isZero()) continue;
+    thinned.push_back(point.position_m);
+  }
+  return thinned;
+}
+
+void AppendInt16(double value, std::string* bytes) {
+  const auto number = static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(value)));
+  *bytes += static_cast<char>(number & 0xffU);
+  *bytes += static_cast<char>(number >> 8U);
+}
+
+/// Metres to a unit of int16, such that the farthest point fits.
+double ScaleOf(const std::vector<Eigen::Vector3f>& points_m) {
+  float farthest_m = 1.0F;
+  for (const Eigen::Vector3f& point : points_m) {
+    farthest_m = std::max(farthest_m, point.cwiseAbs().maxCoeff());
+  }
+  return static_cast<double>(farthest_m) / std::numeric_limits<std::int16_t>::max();
+}
+
+void AppendPixel(const Eigen::Vector3d& point_camera_m,
+                 const CameraModel& camera,
+                 std::string* bytes) {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Constant(kNotSeen);
+  if (camera.IsInFront(point_camera_m)) {
+    const Eigen::Vector2d projected = camera.Project(point_camera_m);
+    if (camera.Contains(projected)) pixel = projected;
+  }
+  AppendInt16(pixel.x(), bytes);
+  AppendInt16(pixel.y(), bytes);
+}
+
+}  // namespace
+
+FramePtr ImageFrame(const image_t& image, const DashboardOptions& options) {
+  const bool is_jpeg = image.pixelformat == kPixelMjpeg;
+  const int factor = Reduction(image.width, options.max_image_width_px);
+  if (factor == 1 && (is_jpeg || image.pixelformat == kPixelPng)) {
+    return BinaryFrame(Header(image, is_jpeg ? "image/jpeg" : "image/png"),
+                       {image.data.begin(), image.data.end()});
+  }
+  std::vector<std::uint8_t> jpeg;
+  cv::imencode(".jpg", Small(image, factor), jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  return BinaryFrame(Header(image, "image/jpeg"), {jpeg.begin(), jpeg.end()});
+}
+
+FramePtr CloudFrame(const PointCloud& cloud_lidar_m,
+                    std::int64_t utime,
+                    const std::optional<Eigen::Isometry3d>& T_camera_lidar,
+                    const CameraModel& camera,
+                    const DashboardOptions& options) {
+  const std::vector<Eigen::Vector3f> points = Thinned(cloud_lidar_m, options.max_cloud_points);
+  const double scale_m = ScaleOf(points);
+  std::string payload;
+  for (const Eigen::Vector3f& point : points) {
+    for (int i = 0; i < 3; ++i) AppendInt16(static_cast<double>(point[i]) / scale_m, &payload);
+  }
+  if (T_camera_lidar) {
+    for (const Eigen::Vector3f& point : points) {
+      AppendPixel(*T_camera_lidar * point.cast<double>(), camera, &payload);
+    }
+  }
+  const Json header = {{"kind", ToString(Slot::kCloud)},
+                       {"utime", utime},
+                       {"num_points", points.size()},
+                       {"scale_m", scale_m},
+                       {"has_pixels", T_camera_lidar.has_value()}};
+  return BinaryFrame(header.dump(), payload);
+}
+
+}  // namespace voqcal

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Geometry>
+
+#include "core/camera/camera_model.hpp"
+#include "core/lidar/point_cloud.hpp"
+#include "dashboard/slot.hpp"
+#include "rig/dashboard_options.hpp"
+#include "voqcal/image_t.hpp"
+
+namespace voqcal {
+
+/// An image for the page: a JPEG or PNG that is small enough as it came, anything else halved until
+/// it fits and as JPEG. The header says the size in pixels of the original.
+/// @throws std::runtime_error if it cannot be decoded.
+FramePtr ImageFrame(const image_t& image, const DashboardOptions& options);
+
+/// A sweep for the page, thinned evenly over its scan lines, and where its points fall in the
+/// image.
+///
+/// Payload: n x (x, y, z) as int16, in units of the header's scale_m, in the lidar frame; then, if
+/// `T_camera_lidar` is known, n x (u, v) as int16, pixels of the original image, or -32768 twice
+/// for a point that the camera does not see.
+FramePtr CloudFrame(const PointCloud& cloud_lidar_m,
+                    std::int64_t utime,
+                    const std::optional<Eigen::Isometry3d>& T_camera_lidar,
+                    const CameraModel& camera,
+                    const DashboardOptions& options);
+
+}  // namespace voqcal

@@ -1,0 +1,97 @@
+#include "dashboard/server.hpp"
+
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <spdlog/spdlog.h>
+
+#include "dashboard/http_session.hpp"
+#include "dashboard/hub.hpp"
+
+namespace voqcal {
+namespace {
+
+using boost::asio::ip::tcp;
+
+constexpr int kMaxRequests = 64;  // at once; more are turned away
+
+tcp::acceptor Listen(boost::asio::io_context* context, const ServerOptions& options) try {
+  const tcp::endpoint endpoint(boost::asio::ip::make_address(options.address), options.port);
+  return tcp::acceptor(*context, endpoint);  // reuses the address of a server that was killed
+} catch (const boost::system::system_error& error) {
+  throw std::runtime_error("cannot serve the page at " + options.address + ":" +
+                           std::to_string(options.port) + ": " + error.code().message() +
+                           " (dashboard: address, port in the rig file)");
+}
+
+}  // namespace
+
+struct DashboardServer::Impl {
+  explicit Impl(const ServerOptions& options)
+      : hub(std::make_shared<Hub>()), acceptor(Listen(&context, options)) {
+    hub->options = options;
+    port = acceptor.local_endpoint().port();
+  }
+
+  void Accept() {
+    acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
+      if (error == boost::asio::error::operation_aborted) return;
+      if (!error && hub->num_requests < kMaxRequests) {
+        std::make_shared<HttpSession>(std::move(socket), hub)->Start();
+      }
+      Accept();
+    });
+  }
+
+  // What one connection throws (no memory, no descriptors) costs that connection only.
+  void Run() {
+    while (!context.stopped()) {
+      try {
+        context.run();
+      } catch (const std::exception& error) {
+        spdlog::warn("a connection failed: {}", error.what());
+      }
+    }
+  }
+
+  std::shared_ptr<Hub> hub;
+  boost::asio::io_context context{1};
+  tcp::acceptor acceptor;
+  std::uint16_t port = 0;
+  std::thread thread;
+};
+
+DashboardServer::DashboardServer(const ServerOptions& options)
+    : impl_(std::make_unique<Impl>(options)) {
+  impl_->Accept();
+  impl_->thread = std::thread([impl = impl_.get()] { impl->Run(); });
+}
+
+DashboardServer::~DashboardServer() {
+  impl_->context.stop();
+  impl_->thread.join();
+}
+
+std::uint16_t DashboardServer::port() const { return impl_->port; }
+int DashboardServer::num_pages() const { return impl_->hub->num_pages; }
+
+void DashboardServer::Show(Slot slot, FramePtr frame) {
+  boost::asio::post(impl_->context, [hub = impl_->hub, slot, frame = std::move(frame)] {
+    hub->newest.at(static_cast<std::size_t>(slot)) = frame;
+    for (Page* page : hub->pages) page->HasNew(slot);
+  });
+}
+
+void DashboardServer::Offer(std::map<std::string, StaticFile> exports) {
+  boost::asio::post(impl_->context, [hub = impl_->hub, exports = std::move(exports)]() mutable {
+    hub->exports = std::move(exports);
+  });
+}
+
+std::vector<PageRequest> DashboardServer::TakeCommands() { return impl_->hub->commands.Take(); }
+
+}  // namespace voqcal

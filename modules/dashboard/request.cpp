@@ -33,9 +33,10 @@ Expected<PageRequest, std::string> ReadCommand(const Json& json) {
   if (json.size() != (has_sample ? 2U : 1U)) return std::string("unknown keys beside \"command\"");
   if (!has_sample) return request;
   // Beyond 2^53 JavaScript's numbers are not exact.
-  constexpr std::int64_t kMaxId = std::int64_t{1} << 53U;
+  constexpr std::uint64_t kMaxId = std::uint64_t{1} << 53U;
   const Json& id = json["sample_id"];
-  if (request.command != "discard" || !id.is_number_unsigned() || id > kMaxId) {
+  const bool is_id = id.is_number_unsigned() && id.get<std::uint64_t>() <= kMaxId;
+  if (request.command != "discard" || !is_id) {
     return std::string("\"sample_id\" is the whole number of the sample to discard");
   }
   request.sample_id = id.get<std::int64_t>();

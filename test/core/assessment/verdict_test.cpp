@@ -1,0 +1,94 @@
+#include "core/assessment/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace voqcal {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Of a session without anything to complain of.
+Evidence GoodEvidence() {
+  Evidence evidence;
+  evidence.held_out_mm = 2.3;
+  evidence.in_sample_mm = 2.1;
+  evidence.normal_deg = 0.6;
+  evidence.sigma_deg = 0.02;
+  evidence.sigma_mm = 1.0;
+  evidence.num_used = 30;
+  evidence.num_samples = 31;
+  evidence.num_cells = 7;
+  evidence.scene = SceneVerdict::kAgrees;
+  evidence.scene_reason = "the edges fit best 0.05 deg from it";
+  return evidence;
+}
+
+template <typename Change>
+Verdict JudgeWith(const Change& change) {
+  Evidence evidence = GoodEvidence();
+  change(&evidence);
+  return Judge(evidence);
+}
+
+TEST(Judge, IsGoodWhereAllIs) {
+  const Verdict verdict = Judge(GoodEvidence());
+  EXPECT_EQ(verdict.grade, Grade::kGood);
+  EXPECT_THAT(verdict.headline, HasSubstr("use it"));
+  for (const VerdictCheck& check : verdict.checks)
+    EXPECT_EQ(check.grade, Grade::kGood) << check.name;
+}
+
+TEST(Judge, IsAsBadAsItsWorstCheck) {
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->held_out_mm = 5.1; }).grade, Grade::kLook);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->held_out_mm = 12.1; }).grade, Grade::kBad);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->in_sample_mm = 0.5; }).grade, Grade::kBad);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->normal_deg = 0.8; }).grade, Grade::kLook);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->sigma_deg = 0.3; }).grade, Grade::kBad);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->sigma_mm = 5; }).grade, Grade::kLook);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->num_samples = 40; }).grade, Grade::kLook);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->likeliest_fault = "a fault"; }).grade, Grade::kLook);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = SceneVerdict::kDisagrees; }).grade, Grade::kBad);
+}
+
+TEST(Judge, WantsMoreOfPosesAndParts) {
+  const auto with_poses = [](int num) {
+    return JudgeWith([num](Evidence* e) { e->num_used = e->num_samples = num; }).grade;
+  };
+  EXPECT_EQ(with_poses(15), Grade::kGood);
+  EXPECT_EQ(with_poses(14), Grade::kLook);
+  EXPECT_EQ(with_poses(5), Grade::kBad);
+  const auto with_cells = [](int num) {
+    return JudgeWith([num](Evidence* e) { e->num_cells = num; }).grade;
+  };
+  EXPECT_EQ(with_cells(5), Grade::kGood);
+  EXPECT_EQ(with_cells(4), Grade::kLook);
+  EXPECT_EQ(with_cells(1), Grade::kBad);
+}
+
+TEST(Judge, DoesNotCallTheUnknownGood) {
+  const Verdict verdict = Judge(Evidence{});
+  EXPECT_EQ(verdict.grade, Grade::kBad);  // no poses
+  for (const VerdictCheck& check : verdict.checks) {
+    if (check.text.find("unknown") == std::string::npos) continue;
+    EXPECT_EQ(check.grade, Grade::kLook) << check.name;
+  }
+}
+
+TEST(Judge, LeavesOutASceneThatSaysNothing) {
+  const std::size_t num = Judge(GoodEvidence()).checks.size();
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = SceneVerdict::kNotJudged; }).checks.size(),
+            num - 1);
+}
+
+TEST(Judge, SpeaksInSentences) {
+  const Verdict verdict =
+      JudgeWith([](Evidence* e) { e->likeliest_fault = "the focal length is off"; });
+  for (const VerdictCheck& check : verdict.checks) {
+    EXPECT_EQ(check.text.back(), '.') << check.text;
+    EXPECT_FALSE(check.text[0] >= 'a' && check.text[0] <= 'z') << check.text;
+  }
+}
+
+}  // namespace
+}  // namespace voqcal

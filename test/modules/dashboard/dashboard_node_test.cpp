@@ -1,0 +1,186 @@
+#include "dashboard/dashboard_node.hpp"
+
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "assessor/assessor_node.hpp"
+#include "extrinsic_estimator/extrinsic_estimator_node.hpp"
+#include "extrinsic_refiner/extrinsic_refiner_node.hpp"
+#include "messaging/convert_image.hpp"
+#include "modules/dashboard/web_client.hpp"
+#include "modules/nodes/chain_test.hpp"
+#include "support/temporary_folder.hpp"
+#include "voq_selector/voq_selector_node.hpp"
+#include "voqcal/command_t.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using Json = nlohmann::json;
+
+ServerOptions TestOptions() {
+  ServerOptions options;
+  options.token = std::string(64, 'a');
+  return options;
+}
+
+class DashboardNodeTest : public test::ChainTest {
+ protected:
+  test::SocketClient Page() const {
+    const std::string host = "127.0.0.1:" + std::to_string(server_.port());
+    return {server_.port(), "/" + TestOptions().token + "/socket", {host, "http://" + host}};
+  }
+  /// The next message of this kind.
+  static Json Next(test::SocketClient* page, const std::string& kind) {
+    Json json;
+    do {
+      json = page->ReadHeader();
+    } while (json["kind"] != kind);
+    return json;
+  }
+  void Calibrate() {
+    Step(&selector_);
+    Step(&estimator_);
+    Step(&refiner_);
+    Step(&assessor_);
+  }
+  void SendEvent(const std::string& kind, const std::string& reason, std::int64_t seq) {
+    event_t event{};
+    event.kind = kind;
+    event.reason = reason;
+    event.seq = seq;
+    test::Send(&bus_, rig_.channels.calib_event, event);
+  }
+
+  test::TemporaryFolder folder_;
+  VoqSelectorNode selector_{rig_, &bus_};
+  ExtrinsicEstimatorNode estimator_{rig_, &bus_};
+  ExtrinsicRefinerNode refiner_{rig_, &bus_};
+  AssessorNode assessor_{rig_, &bus_, folder_.path()};
+  DashboardServer server_{TestOptions()};
+  DashboardNode node_{rig_, &bus_, &server_, folder_.path()};
+  test::Inbox<command_t> commands_{&bus_, rig_.channels.calib_command};
+};
+
+TEST_F(DashboardNodeTest, TellsWhatTheRigIs) {
+  test::SocketClient page = Page();
+  const Json rig = Next(&page, "rig");
+  EXPECT_EQ(rig["name"], rig_.name);
+  EXPECT_EQ(rig["camera"]["width_px"], rig_.camera.width_px);
+}
+
+TEST_F(DashboardNodeTest, ShowsSamplesResultAndVerdict) {
+  SendSamples(test::NoisySamples(20), 20);
+  Calibrate();
+  Step(&node_);
+  test::SocketClient page = Page();
+  const Json samples = Next(&page, "samples");
+  EXPECT_EQ(samples["samples"].size(), 20U);
+  EXPECT_TRUE(samples["samples"][0].contains("held_out_mm"));
+  const Json result = Next(&page, "result");
+  EXPECT_EQ(result["is_current"], true);
+  EXPECT_EQ(result["working_on"], "");
+  EXPECT_EQ(result["num_samples"], 20);
+  EXPECT_GE(result["verdict"]["checks"].size(), 8U);
+  EXPECT_THAT(result["exports"], Contains("extrinsic.yaml"));
+  EXPECT_THAT(result["exports"], Contains("extrinsic_kalibr.yaml"));
+}
+
+TEST_F(DashboardNodeTest, KeepsTheOldResultWhileItComputes) {
+  SendSamples(test::NoisySamples(8), 8);
+  Calibrate();
+  SendSamples(test::NoisySamples(9), 9);
+  Step(&selector_);
+  Step(&node_);
+  test::SocketClient page = Page();
+  const Json result = Next(&page, "result");
+  EXPECT_EQ(result["is_current"], false);
+  EXPECT_EQ(result["num_samples"], 8);
+  EXPECT_EQ(result["working_on"], "calibrating each set");
+}
+
+TEST_F(DashboardNodeTest, SaysWhyThereIsNoResult) {
+  SendSamples(test::NoisySamples(2), 2);
+  Calibrate();
+  Step(&node_);
+  test::SocketClient page = Page();
+  EXPECT_THAT(Next(&page, "result")["problem"].get<std::string>(), HasSubstr("three"));
+}
+
+TEST_F(DashboardNodeTest, ExportsAreThoseOfTheResultFile) {
+  SendSamples(test::NoisySamples(8), 8);
+  Calibrate();
+  Step(&node_);
+  test::SocketClient page = Page();
+  Next(&page, "result");
+  const std::string host = "127.0.0.1:" + std::to_string(server_.port());
+  const auto file = test::Request(
+      server_.port(), "/" + TestOptions().token + "/export/extrinsic.yaml", {host, ""});
+  EXPECT_EQ(file.body(), ToYaml(*assessor_.result()));
+}
+
+TEST_F(DashboardNodeTest, SendsCommands) {
+  test::SocketClient page = Page();
+  page.Send(R"({"command": "discard", "sample_id": 5})");
+  while (commands_.messages.empty()) {
+    Step(&node_);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ASSERT_THAT(commands_.messages, SizeIs(1));
+  EXPECT_EQ(commands_.messages[0].command, "discard");
+  EXPECT_EQ(commands_.messages[0].sample_id, 5);
+  EXPECT_GT(commands_.messages[0].utime, 0);
+}
+
+TEST_F(DashboardNodeTest, CountsRejectsOfOneCause) {
+  SendEvent("accepted", "", 1);
+  SendEvent("rejected", "board is moving: 0.12 m", 2);
+  SendEvent("rejected", "board is moving: 0.13 m", 3);
+  SendEvent("rejected", "pose is not new", 4);
+  test::SocketClient page = Page();
+  const Json events = Next(&page, "events")["events"];
+  ASSERT_EQ(events.size(), 3U);
+  EXPECT_EQ(events[0]["reason"], "pose is not new");
+  EXPECT_EQ(events[1]["reason"], "board is moving: 0.13 m");
+  EXPECT_EQ(events[1]["count"], 2);
+  EXPECT_EQ(events[2]["event"], "accepted");
+}
+
+TEST_F(DashboardNodeTest, CountsWhatItCannotShow) {
+  image_t image{};
+  image.width = 10;
+  image.height = 10;
+  image.pixelformat = 7;
+  test::Send(&bus_, rig_.channels.camera_image, image);
+  EXPECT_EQ(node_.counters().at("messages that cannot be shown"), 1);
+}
+
+// Without a page it makes a frame a second at most: two images in a row cost one.
+TEST_F(DashboardNodeTest, ShowsNoMoreImagesThanItsRate) {
+  for (int i = 0; i < 5; ++i) {
+    test::Send(
+        &bus_, rig_.channels.camera_image, ToMessage(cv::Mat(8, 8, CV_8UC1, cv::Scalar(9)), i, i));
+  }
+  test::SocketClient page = Page();
+  EXPECT_EQ(Next(&page, "image")["utime"], 0);
+}
+
+TEST_F(DashboardNodeTest, SaysWhichModulesAreSilent) {
+  module_status_t status{};
+  status.module = "assessor";
+  status.state = "failed: disk full";
+  test::Send(&bus_, rig_.channels.module_status, status);
+  node_.Republish();
+  test::SocketClient page = Page();
+  const Json module = Next(&page, "modules")["modules"].at(0);
+  EXPECT_EQ(module["name"], "assessor");
+  EXPECT_EQ(module["health"], "failed");
+}
+
+}  // namespace
+}  // namespace voqcal

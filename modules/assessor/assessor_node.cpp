@@ -93,6 +93,10 @@ void AssessorNode::Assess() {
     result_ = Result();
     Fill(*result_, &assessment);
     WriteFileAtomically(session_folder_ / kResultName, ToYaml(*result_));
+  } else {
+    // An earlier result is not that of these samples (after a reset, say).
+    std::error_code error;
+    std::filesystem::remove(session_folder_ / kResultName, error);
   }
   assessment_ = std::move(assessment);
 }

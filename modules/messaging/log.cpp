@@ -17,12 +17,10 @@ namespace {
 // An event, all big-endian: sync word u32, event number i64, time i64, channel length u32, data
 // length u32, channel, data. (LCM 1.3.1, lcm/eventlog.c.)
 constexpr std::array<std::uint8_t, 4> kSyncWord = {0xED, 0xA1, 0xDA, 0x01};
-constexpr std::size_t kHeaderBytes = 28;
+constexpr std::int64_t kHeaderBytes = 28;
 
 /// LCM's channels have at most 63; a longer one is damage.
 constexpr std::uint64_t kMaxChannelBytes = 63;
-
-using Header = std::array<std::uint8_t, kHeaderBytes>;
 
 std::uint64_t ReadBigEndian(const std::uint8_t* bytes, int num_bytes) {
   std::uint64_t value = 0;
@@ -53,7 +51,7 @@ void SyncFolderOf(const std::filesystem::path& path) {
 
 std::vector<std::uint8_t> EncodeLogEvent(const LogEvent& event) {
   std::vector<std::uint8_t> bytes(kSyncWord.begin(), kSyncWord.end());
-  bytes.reserve(kHeaderBytes + event.channel.size() + event.bytes.size());
+  bytes.reserve(static_cast<std::size_t>(kHeaderBytes) + event.channel.size() + event.bytes.size());
   AppendBigEndian(static_cast<std::uint64_t>(event.number), 8, &bytes);
   AppendBigEndian(static_cast<std::uint64_t>(event.utime), 8, &bytes);
   AppendBigEndian(event.channel.size(), 4, &bytes);
@@ -75,44 +73,97 @@ LogReader::LogReader(const std::filesystem::path& path) : path_(path) {
   if (!file_) throw std::runtime_error(path.string() + ": cannot be read");
 }
 
-void LogReader::FailTruncated() const {
-  throw TruncatedLogError(
-      At(path_, offset_) + "the LCM log is cut off within the event that begins here", offset_);
+std::vector<std::uint8_t> LogReader::Read(std::int64_t offset, std::int64_t num_bytes) {
+  std::vector<std::uint8_t> bytes(
+      static_cast<std::size_t>(std::min(num_bytes, num_bytes_ - offset)));
+  file_.clear();
+  file_.seekg(offset);
+  file_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file_.gcount()));
+  return bytes;
+}
+
+// A cut may fall within the sync word: what there is of it must match.
+bool LogReader::IsSyncOrEnd(std::int64_t offset) {
+  const std::vector<std::uint8_t> bytes = Read(offset, std::int64_t{kSyncWord.size()});
+  return std::equal(bytes.begin(), bytes.end(), kSyncWord.begin());
+}
+
+LogReader::Extent LogReader::ExtentAt(std::int64_t offset) {
+  Extent extent;
+  extent.has_sync = IsSyncOrEnd(offset);
+  const std::vector<std::uint8_t> header = Read(offset, kHeaderBytes);
+  if (!extent.has_sync || header.size() < static_cast<std::size_t>(kHeaderBytes)) return extent;
+  const std::uint64_t channel_bytes = ReadBigEndian(&header[20], 4);
+  const std::uint64_t data_bytes = ReadBigEndian(&header[24], 4);
+  extent.is_possible = channel_bytes > 0 && channel_bytes <= kMaxChannelBytes;
+  extent.channel_bytes = static_cast<std::int64_t>(channel_bytes);
+  extent.end = offset + kHeaderBytes + static_cast<std::int64_t>(channel_bytes + data_bytes);
+  return extent;
+}
+
+// The next place at which a whole event begins that ends where another does, or with the file.
+std::optional<std::int64_t> LogReader::FindEvent(std::int64_t from) {
+  constexpr std::int64_t kBlockBytes = 1 << 20;
+  for (std::int64_t begin = from; begin < num_bytes_; begin += kBlockBytes) {
+    const std::vector<std::uint8_t> block =
+        Read(begin, kBlockBytes + static_cast<std::int64_t>(kSyncWord.size()) - 1);
+    auto sync = block.begin();
+    while (true) {
+      sync = std::search(sync, block.end(), kSyncWord.begin(), kSyncWord.end());
+      if (sync == block.end()) break;
+      const std::int64_t offset = begin + (sync - block.begin());
+      const Extent extent = ExtentAt(offset);
+      if (extent.is_possible && extent.end <= num_bytes_ && IsSyncOrEnd(extent.end)) return offset;
+      ++sync;
+    }
+  }
+  return std::nullopt;
+}
+
+LogEvent LogReader::Take(const Extent& extent) {
+  const std::vector<std::uint8_t> bytes = Read(offset_, extent.end - offset_);
+  if (static_cast<std::int64_t>(bytes.size()) < extent.end - offset_) {
+    throw std::runtime_error(At(path_, offset_) + "cannot be read");
+  }
+  const auto data = bytes.begin() + kHeaderBytes;
+  LogEvent event;
+  event.number = static_cast<std::int64_t>(ReadBigEndian(&bytes[4], 8));
+  event.utime = static_cast<std::int64_t>(ReadBigEndian(&bytes[12], 8));
+  event.channel.assign(data, data + extent.channel_bytes);
+  event.bytes.assign(data + extent.channel_bytes, bytes.end());
+  offset_ = extent.end;
+  return event;
 }
 
 std::optional<LogEvent> LogReader::Next() {
   if (offset_ == num_bytes_) return std::nullopt;
-  const std::int64_t num_left = num_bytes_ - offset_;
-  Header header{};
-  file_.read(reinterpret_cast<char*>(header.data()), kHeaderBytes);
-  const auto num_read = static_cast<std::size_t>(file_.gcount());
-  // A cut may fall within the sync word: what there is of it must match.
-  if (!std::equal(kSyncWord.begin(),
-                  kSyncWord.begin() + std::min(num_read, kSyncWord.size()),
-                  header.begin())) {
-    throw std::runtime_error(At(path_, offset_) +
-                             "no LCM log event begins here (foreign or damaged file)");
+  const Extent extent = ExtentAt(offset_);
+  const bool is_whole = extent.is_possible && extent.end <= num_bytes_;
+  if (is_whole && IsSyncOrEnd(extent.end)) return Take(extent);
+  if (offset_ == 0 && !extent.has_sync) {
+    throw std::runtime_error(At(path_, 0) + "no LCM log event begins here (a foreign file)");
   }
-  if (num_read < kHeaderBytes) FailTruncated();
+  const std::optional<std::int64_t> next = FindEvent(offset_ + 1);
+  // Damage after this event is not its own.
+  if (is_whole && (!next || *next >= extent.end)) return Take(extent);
+  const bool is_cut =
+      extent.has_sync && (extent.is_possible || num_bytes_ - offset_ < kHeaderBytes);
+  if (!next && is_cut) {
+    throw TruncatedLogError(
+        At(path_, offset_) + "the LCM log is cut off within the event that begins here", offset_);
+  }
+  ++num_damaged_;
+  offset_ = next.value_or(num_bytes_);
+  return next ? std::optional(Take(ExtentAt(offset_))) : std::nullopt;
+}
 
-  LogEvent event;
-  event.number = static_cast<std::int64_t>(ReadBigEndian(&header[4], 8));
-  event.utime = static_cast<std::int64_t>(ReadBigEndian(&header[12], 8));
-  const std::uint64_t channel_bytes = ReadBigEndian(&header[20], 4);
-  const std::uint64_t data_bytes = ReadBigEndian(&header[24], 4);
-  if (channel_bytes == 0 || channel_bytes > kMaxChannelBytes) {
-    throw std::runtime_error(At(path_, offset_) + "the event's channel name has " +
-                             std::to_string(channel_bytes) + " bytes (1 to 63 are possible)");
-  }
-  const auto event_bytes = static_cast<std::int64_t>(kHeaderBytes + channel_bytes + data_bytes);
-  if (event_bytes > num_left) FailTruncated();
-  event.channel.resize(channel_bytes);
-  event.bytes.resize(data_bytes);
-  file_.read(event.channel.data(), static_cast<std::streamsize>(channel_bytes));
-  file_.read(reinterpret_cast<char*>(event.bytes.data()), static_cast<std::streamsize>(data_bytes));
-  if (!file_) FailTruncated();
-  offset_ += event_bytes;
-  return event;
+void RequireNotBeingWritten(const std::filesystem::path& path) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  const bool is_free = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  close(descriptor);
+  if (!is_free) throw std::runtime_error(path.string() + ": is being written by another process");
 }
 
 LogWriter::LogWriter(const std::filesystem::path& path) : path_(path) {
@@ -140,6 +191,9 @@ void LogWriter::CutHalfWrittenEvent() {
   } catch (const TruncatedLogError& error) {
     spdlog::warn("{} (cut off there, to go on)", error.what());
     CutAt(error.offset());
+  }
+  if (reader.num_damaged() > 0) {
+    spdlog::warn("{}: {} damaged places, left as they are", path_.string(), reader.num_damaged());
   }
   num_bytes_ = reader.offset();
 }

@@ -33,29 +33,50 @@ class TruncatedLogError : public std::runtime_error {
 };
 
 /// Reads an LCM log from the front. LCM's own reader looks for the next sync word when it meets
-/// anything else, and takes a cut event for the end; this one tells both.
+/// anything else, and takes a cut event for the end; this one counts what is damaged, and tells a
+/// cut.
 class LogReader {
  public:
   /// @throws std::runtime_error naming the file, if it cannot be read.
   explicit LogReader(const std::filesystem::path& path);
 
-  /// The next event, or nothing at the end.
+  /// The next whole event, or nothing at the end. What is damaged before it is skipped: an event
+  /// whose header cannot be, or which does not end where another begins while another begins
+  /// within it.
   /// @throws TruncatedLogError if the file ends within the event.
-  /// @throws std::runtime_error naming file, byte offset and cause, if there is no event here.
+  /// @throws std::runtime_error naming the file, if it does not begin with an event.
   std::optional<LogEvent> Next();
 
   /// Where Next will read, bytes from the start.
   std::int64_t offset() const { return offset_; }
   std::int64_t num_bytes() const { return num_bytes_; }  ///< The file's size when it was opened.
+  std::int64_t num_damaged() const { return num_damaged_; }  ///< Places that Next has skipped.
 
  private:
-  [[noreturn]] void FailTruncated() const;
+  /// What an event's header says of it.
+  struct Extent {
+    bool has_sync = false;     ///< As far as the file goes.
+    bool is_possible = false;  ///< A whole header of an event that may be.
+    std::int64_t channel_bytes = 0;
+    std::int64_t end = 0;
+  };
+
+  std::vector<std::uint8_t> Read(std::int64_t offset, std::int64_t num_bytes);
+  Extent ExtentAt(std::int64_t offset);
+  bool IsSyncOrEnd(std::int64_t offset);
+  std::optional<std::int64_t> FindEvent(std::int64_t from);
+  LogEvent Take(const Extent& extent);
 
   std::filesystem::path path_;
   std::ifstream file_;
   std::int64_t num_bytes_ = 0;
   std::int64_t offset_ = 0;
+  std::int64_t num_damaged_ = 0;
 };
+
+/// @throws std::runtime_error naming the log, if a LogWriter has it open in another process; not if
+/// there is no such file.
+void RequireNotBeingWritten(const std::filesystem::path& path);
 
 /// Appends to an LCM log. Numbers and times come from the caller, so that the same events give the
 /// same bytes.

@@ -143,6 +143,12 @@ TEST_F(BadInput, SamplesLogCut) {
   EXPECT_EQ(std::filesystem::file_size(log), whole.size() - 10);  // not mended either
 }
 
+TEST_F(BadInput, FolderOfASessionThatIsStillCollecting) {
+  const SessionLog session(folder_.path() / "out");
+  const std::string log = WriteLog(1);
+  ExpectCalibrateRefuses("--log", log, AllOf(HasSubstr("samples.lcm"), HasSubstr("being written")));
+}
+
 TEST_F(BadInput, LogThatIsNone) {
   const std::string log = folder_.Write("raw.lcm", "these are no events\n");
   ExpectCalibrateRefuses("--log", log, AllOf(HasSubstr(log), HasSubstr("no LCM log event")));

@@ -12,6 +12,7 @@
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
+#include "messaging/log.hpp"
 #include "report/write_report.hpp"
 #include "rig/atomic_file.hpp"
 #include "rig/rig.hpp"
@@ -29,6 +30,7 @@ struct CalibrateArgs {
 // Moves the finished files to where they were asked for, the result last. A report that could not
 // be made must not leave an earlier one beside a new result.
 void Deliver(const std::filesystem::path& from, const std::filesystem::path& to) {
+  RequireNotBeingWritten(to / kSamplesLogName);
   std::error_code error;
   std::filesystem::create_directories(to, error);
   if (!std::filesystem::exists(from / kReportName))
@@ -45,6 +47,8 @@ void Calibrate(const CalibrateArgs& args) {
   if (std::filesystem::exists(args.out) && !std::filesystem::is_directory(args.out)) {
     throw std::runtime_error(args.out.string() + ": is in the way: --out names a folder");
   }
+  RequireNotBeingWritten(args.out /
+                         kSamplesLogName);  // a live session's, which must not be replaced
   const ScratchFolder scratch(args.out);
   const auto run = CollectSamples(rig, args.input, scratch.path());
   run->Finish(/*is_collecting_only=*/false);

@@ -48,6 +48,7 @@ void OfflineRun::FeedLog(const std::filesystem::path& log, const OnProgress& on_
     on_progress(static_cast<double>(reader.offset()) / static_cast<double>(reader.num_bytes()),
                 samples().size());
   }
+  num_damaged_ += reader.num_damaged();
   for (const std::string& needed : {channels_.lidar_points, channels_.camera_image}) {
     if (seen.count(needed) != 0) continue;
     std::string there;
@@ -85,6 +86,9 @@ std::string OfflineRun::Losses() const {
     if (counts.num_lost == 0 && counts.num_malformed == 0) continue;
     text += (text.empty() ? "" : "; ") + channel + ": " + std::to_string(counts.num_lost) +
             " lost, " + std::to_string(counts.num_malformed) + " unreadable";
+  }
+  if (num_damaged_ > 0) {
+    text += (text.empty() ? "" : "; ") + std::to_string(num_damaged_) + " damaged places";
   }
   return text;
 }

@@ -50,8 +50,8 @@ class OfflineRun {
   /// Every CALIB_EVENT.
   const std::vector<event_t>& events() const { return events_; }
 
-  /// "LIDAR_POINTS: 3 lost, 0 unreadable": what the recording lacks, by its sequence numbers; empty
-  /// if nothing.
+  /// "LIDAR_POINTS: 3 lost, 0 unreadable; 1 damaged places": what the recording lacks, by its
+  /// sequence numbers and as it was read; empty if nothing.
   std::string Losses() const;
 
   /// What each module counted, by module: boards, misses by reason, samples, rejections by reason.
@@ -71,6 +71,7 @@ class OfflineRun {
   AssessorNode assessor_;
   extrinsic_averaged_t averaged_;
   std::vector<event_t> events_;
+  std::int64_t num_damaged_ = 0;  // places of the recording
 };
 
 /// True if the log is a session's samples.lcm rather than a recording of sensors.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "core/board/average_sightings.hpp"
 #include "core/geometry/rigid.hpp"
@@ -33,6 +34,12 @@ std::string EdgeProblem(const LidarBoard& lidar, const BoardSpec& board, double 
            Format("", lidar.edge_lengths_m[i], " m");
   }
   return {};
+}
+
+std::vector<PickerDecision> Joined(std::vector<PickerDecision> first,
+                                   const std::vector<PickerDecision>& then) {
+  first.insert(first.end(), then.begin(), then.end());
+  return first;
 }
 
 std::vector<LidarBoard> CandidatesOf(const LidarSighting& sighting) {
@@ -115,21 +122,36 @@ SamplePicker::SamplePicker(const BoardSpec& board, const SamplePickerOptions& op
 }
 
 std::vector<PickerDecision> SamplePicker::Add(const LidarSighting& sighting) {
+  std::vector<PickerDecision> decisions = RestartIfBack(sighting.utime, newest_lidar_utime_);
   if (sighting.utime <= newest_lidar_utime_) {
-    return {{sighting.utime, {}, "lidar frame out of order"}};
+    decisions.push_back({sighting.utime, {}, "lidar frame out of order"});
+    return decisions;
   }
   newest_lidar_utime_ = sighting.utime;
   lidar_.push_back(sighting);
-  return Judge(false);
+  return Joined(std::move(decisions), Judge(false));
 }
 
 std::vector<PickerDecision> SamplePicker::Add(const CameraSighting& sighting) {
+  std::vector<PickerDecision> decisions = RestartIfBack(sighting.utime, newest_camera_utime_);
   if (sighting.utime <= newest_camera_utime_) {
-    return {{sighting.utime, {}, "camera frame out of order"}};
+    decisions.push_back({sighting.utime, {}, "camera frame out of order"});
+    return decisions;
   }
   newest_camera_utime_ = sighting.utime;
   camera_.push_back(sighting);
-  return Judge(false);
+  return Joined(std::move(decisions), Judge(false));
+}
+
+// A driver that was started again on a folder or a capture, or a clock that was set: what waits is
+// judged, and time begins anew for both sensors.
+std::vector<PickerDecision> SamplePicker::RestartIfBack(std::int64_t utime, std::int64_t newest) {
+  constexpr double kMaxOutOfOrderUs = 2e6;  // networks reorder by less
+  if (static_cast<double>(newest) - static_cast<double>(utime) <= kMaxOutOfOrderUs) return {};
+  std::vector<PickerDecision> decisions = Judge(true);
+  window_.clear();
+  newest_lidar_utime_ = newest_camera_utime_ = std::numeric_limits<std::int64_t>::min();
+  return decisions;
 }
 
 std::vector<PickerDecision> SamplePicker::Flush() { return Judge(true); }

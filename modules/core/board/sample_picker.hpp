@@ -50,9 +50,11 @@ struct PickerDecision {
 /// Pairs the two detectors' streams by sensor time and picks the samples.
 ///
 /// The answer depends on the sightings' times only, not on the order in which the two streams
-/// arrive: a sighting is judged once both streams have passed its time, or at Flush. Two
-/// exceptions: a stream whose partner lags by more than 600 frames is judged without it, and
-/// RequestCapture takes the next pair that is judged after the request.
+/// arrive: a sighting is judged once both streams have passed its time, or at Flush. Three
+/// exceptions: a stream whose partner lags by more than 600 frames is judged without it;
+/// RequestCapture takes the next pair that is judged after the request; and where a stream goes back
+/// by more than 2 s (its driver was started again on a recording), all that waits is judged and time
+/// begins anew.
 class SamplePicker {
  public:
   /// @throws std::invalid_argument if `options` have Problems().
@@ -77,6 +79,7 @@ class SamplePicker {
     CameraSighting camera;
   };
 
+  std::vector<PickerDecision> RestartIfBack(std::int64_t utime, std::int64_t newest);
   std::vector<PickerDecision> Judge(bool is_flushing);
   /// Index in camera_ of the frame nearest to `utime` within max_pair_offset_s; -1 if there is
   /// none.

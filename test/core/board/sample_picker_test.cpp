@@ -125,6 +125,23 @@ TEST(SamplePicker, SaysWhyAPairGivesNoSample) {
                                    "accepted"));
 }
 
+TEST(SamplePicker, GoesOnWhereADriverIsStartedAgainInThePast) {
+  SamplePickerOptions options;
+  options.num_still_frames = 1;
+  SamplePicker picker(Board(), options);
+  std::vector<PickerDecision> decisions;
+  const auto add = [&](int frame, double x_m) {
+    Append(picker.Add(Lidar(frame, x_m)), &decisions);
+    Append(picker.Add(Camera(frame, x_m)), &decisions);
+  };
+  // Frames are 0.1 s apart: back by 9.9 s, while the last pair before still waits.
+  add(100, 0.0);
+  add(1, 0.5);
+  add(2, 1.0);
+  Append(picker.Flush(), &decisions);
+  EXPECT_THAT(Outcomes(decisions), testing::ElementsAre("accepted", "accepted", "accepted"));
+}
+
 TEST(SamplePicker, AccountsForCameraFramesWithoutALidarFrame) {
   SamplePickerOptions options;
   options.num_still_frames = 1;

@@ -170,27 +170,49 @@ TEST_F(LogFile, OfAnotherKindIsRefusedAndLeftAlone) {
   }
 }
 
-// LCM's own reader would look for the next sync word and say nothing.
-TEST_F(LogFile, IsRefusedWhenDamagedInTheMiddle) {
+TEST_F(LogFile, IsReadAroundDamageInItsMiddle) {
   Write(1, 3);
   const std::string whole = Contents();
-  std::string damaged = whole;
-  damaged[47] = 0;  // sync word of the second event
+  constexpr std::size_t kSecond = 47;
+  const auto damage = [&](std::size_t at, const std::string& bytes) {
+    std::string damaged = whole;
+    damaged.replace(at, bytes.size(), bytes);
+    SetContents(damaged);
+  };
+  const auto numbers = [this] {
+    LogReader reader(path_);
+    std::vector<std::int64_t> read;
+    while (const auto event = reader.Next()) read.push_back(event->number);
+    EXPECT_EQ(reader.num_damaged(), 1);
+    EXPECT_EQ(reader.offset(), reader.num_bytes());
+    return read;
+  };
+  const std::vector<std::int64_t> first_and_third = {1, 3};
+  damage(kSecond, "?");  // its sync word
+  EXPECT_EQ(numbers(), first_and_third);
+  damage(kSecond + 20, "\x01");  // a channel name of 16 MB
+  EXPECT_EQ(numbers(), first_and_third);
+  damage(kSecond + 24, "\x7F");  // 2 GB of data: beyond the file's end
+  EXPECT_EQ(numbers(), first_and_third);
+  damage(kSecond + 27, "\x40");  // data that reach into the third event
+  EXPECT_EQ(numbers(), first_and_third);
+  damage(kSecond + 27, "\x01");                                // data that end too early
+  EXPECT_EQ(numbers(), (std::vector<std::int64_t>{1, 2, 3}));  // cut short, but an event
+  const std::size_t third = whole.size() - (28 + 9 + 30);
+  damage(third, std::string(20, '\0'));  // the last
+  EXPECT_EQ(numbers(), (std::vector<std::int64_t>{1, 2}));
+}
+
+TEST_F(LogFile, GoesOnAfterDamageInItsMiddleAndCutsNothing) {
+  Write(1, 3);
+  std::string damaged = Contents();
+  damaged[47 + 24] = 0x7F;  // the second event claims 2 GB
   SetContents(damaged);
-  LogReader reader(path_);
-  EXPECT_TRUE(reader.Next());
-  try {
-    reader.Next();
-    FAIL();
-  } catch (const TruncatedLogError&) {
-    FAIL() << "damaged, not cut off";
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("byte 47"));
-  }
-  damaged = whole;
-  damaged[47 + 20] = 1;  // a channel name of 16 MB
-  SetContents(damaged);
-  EXPECT_THROW(Read(), std::runtime_error);
+  Write(4, 4);
+  EXPECT_EQ(Contents().substr(0, damaged.size()), damaged);
+  const auto events = Read();
+  ASSERT_EQ(events.size(), 3U);
+  EXPECT_EQ(events[2].number, 4);
 }
 
 TEST_F(LogFile, ThatIsMissingOrAFolderIsRefusedByName) {

@@ -75,6 +75,15 @@ TEST_F(AssessorNodeTest, WritesTheWholeResultAsExtrinsicYaml) {
   EXPECT_EQ(std::distance(begin(entries), end(entries)), 1);
 }
 
+TEST_F(AssessorNodeTest, TakesTheResultAwayWithItsSamples) {
+  RunStagesBefore(test::NoisySamples(8), 8);
+  Step(&node_);
+  ASSERT_TRUE(std::filesystem::exists(file_));
+  RunStagesBefore({}, 9);  // as after the command "reset"
+  Step(&node_);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
 TEST_F(AssessorNodeTest, HeldOutScoresAreWorseThanInSample) {
   RunStagesBefore(test::NoisySamples(30), 30);
   Step(&node_);

@@ -72,6 +72,21 @@ TEST_F(OfflineRunTest, ChecksTheSceneAndDoesSoAgainFromTheSamplesAlone) {
             ReadWholeFile(session("recording") / kResultName));
 }
 
+TEST_F(OfflineRunTest, GoesOnAfterADamagedEventAndSaysSo) {
+  const Rig rig = test::TinySimulatedRig();
+  test::WriteStopsLog(rig, log_);
+  std::string bytes = ReadWholeFile(log_);
+  const std::size_t second = bytes.find("\xED\xA1\xDA\x01", 4);
+  bytes.replace(second, 4, "????");
+  folder_.Write("raw.lcm", bytes);
+  OfflineRun run(rig, session("s"));
+  run.FeedLog(log_, NoProgress);
+  run.Finish(/*is_collecting_only=*/true);
+  EXPECT_EQ(run.Losses(), "1 damaged places");
+  // The first image is gone, and so the first stop.
+  EXPECT_THAT(run.samples(), SizeIs(rig.simulation.num_poses - 1));
+}
+
 TEST_F(OfflineRunTest, CollectsOnlyIfAsked) {
   OfflineRun run(test::TinySimulatedRig(), session("s"));
   run.FeedSamples(test::SynthesizeSamples({}));

@@ -1,0 +1,16 @@
+// A rig file.
+#include "fuzz/fuzz_input.hpp"
+#include "rig/rig_sections.hpp"
+#include "rig/yaml_reader.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text = voqcal::fuzz::Input(data, size).Text();
+  voqcal::fuzz::Tolerate([&text] {
+    voqcal::YamlDocument document("rig.yaml", text);
+    voqcal::Rig rig;
+    rig.path = "rig.yaml";
+    voqcal::ReadRigSections(&document, &rig);
+    document.ThrowIfWrong();
+  });
+  return 0;
+}

@@ -72,6 +72,10 @@ cv::Mat EncodedImage(const image_t& message) {
     Fail("the " + format + " has " + Size(info->width_px, info->height_px) +
          " px, the message says " + Size(message.width, message.height));
   }
+  constexpr std::int64_t kMaxPixels = 1 << 27;  // 400 MB; no camera has more
+  if (std::int64_t{info->width_px} * info->height_px > kMaxPixels) {
+    Fail("the " + format + " has " + Size(info->width_px, info->height_px) + " px: too large");
+  }
   // libjpeg makes up the missing rest of a cut image in grey, without an error.
   if (!info->has_end) Fail("the " + format + " is cut off");
   cv::Mat image;

@@ -181,6 +181,19 @@ INSTANTIATE_TEST_SUITE_P(
                              m->width = 41;
                            }}));
 
+TEST(ImageMessage, IsRefusedBeforeItsHeaderCanAskForGigabytes) {
+  auto bytes = Encoded(Picture(), ".png");
+  for (const std::size_t at : {16U, 20U}) bytes[at + 2] = bytes[at + 3] = 0xFF;  // 65535 a side
+  const image_t message = EncodedToMessage(bytes, 0, 1);
+  EXPECT_EQ(message.width, 65535);
+  try {
+    FromMessage(message);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("too large"));
+  }
+}
+
 TEST(InspectEncodedImage, SurvivesEveryShortFile) {
   for (const std::string extension : {".png", ".jpg"}) {
     const auto bytes = Encoded(Picture(), extension);

@@ -104,6 +104,36 @@ TEST(ReadPointCloud, ReadsPlyTextAndBinary) {
                            BinaryPoint(std::nanf(""), 0, 0, 42, 15)));
 }
 
+TEST(ReadPointCloud, ReadsBigEndianPlyAndLeavesFieldsOfSeveralNumbers) {
+  const auto swapped = [](std::string bytes) { return std::string(bytes.rbegin(), bytes.rend()); };
+  const PointCloud ply =
+      Read("a.ply",
+           PlyHeader(1, "binary_big_endian") + swapped(Bytes(1.5F)) + swapped(Bytes(-2.0F)) +
+               swapped(Bytes(3.0F)) + swapped(Bytes(7.0F)) + swapped(Bytes(std::uint16_t{9})));
+  EXPECT_EQ(ply.points.at(0).position_m, Eigen::Vector3f(1.5F, -2, 3));
+  EXPECT_EQ(ply.points.at(0).ring, 9);
+  const std::string header =
+      "FIELDS x normal y z\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 3 1 1\nWIDTH 1\nHEIGHT 1\n"
+      "POINTS 1\nDATA ";
+  const std::string numbers =
+      Bytes(1.0F) + Bytes(9.0F) + Bytes(9.0F) + Bytes(9.0F) + Bytes(2.0F) + Bytes(3.0F);
+  EXPECT_EQ(Read("a.pcd", header + "ascii\n1 9 9 9 2 3\n").points.at(0).position_m,
+            Eigen::Vector3f(1, 2, 3));
+  EXPECT_EQ(Read("a.pcd", header + "binary\n" + numbers).points.at(0).position_m,
+            Eigen::Vector3f(1, 2, 3));
+}
+
+TEST(ReadPointCloud, RefusesTypesThatAreNone) {
+  EXPECT_THAT(ReadError("a.pcd",
+                        "FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\n"
+                        "DATA ascii\n1 2 3\n"),
+              EndsWith("the type of field z is not known: F of 3 bytes"));
+  EXPECT_THAT(ReadError("a.pcd",
+                        "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 2000000000\nWIDTH 1\n"
+                        "HEIGHT 1\nPOINTS 1\nDATA binary\n"),
+              EndsWith("the COUNT of field z is too large"));
+}
+
 TEST(ReadPointCloud, TellsWhatTheFileDoesNotCarry) {
   const PointCloud cloud = Read("a.pcd",
                                 "FIELDS x y z time\nSIZE 8 8 8 4\nTYPE F F F F\nWIDTH 1\nHEIGHT 1\n"

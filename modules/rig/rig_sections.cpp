@@ -140,6 +140,7 @@ void ReadSimulation(YamlSection* top, SimulationOptions* options) {
   section.Read("dark_bias_m", &options->dark_bias_m);
   section.Read("intensity_noise", &options->intensity_noise);
   section.ReadDegrees("beam_divergence_deg", &options->beam_divergence_rad);
+  section.ReadDegrees("pointing_noise_deg", &options->pointing_noise_rad);
   section.Read("dropout", &options->dropout);
   section.Read("image_noise", &options->image_noise);
   section.Read("image_blur_px", &options->image_blur_px);
@@ -158,6 +159,7 @@ void ReadLidarBoardDetector(YamlSection* top, LidarBoardOptions* options) {
     options->region_of_interest = region;
   }
   box.RefuseUnknownKeys();
+  section.Read("max_corner_sigma_m", &options->max_corner_sigma_m);
   section.Read("max_bend_m", &options->max_bend_m);
   section.Read("thickness_m", &options->thickness_m);
   section.Read("thickness_sigma_m", &options->thickness_sigma_m);
@@ -167,6 +169,7 @@ void ReadLidarBoardDetector(YamlSection* top, LidarBoardOptions* options) {
   beam.Read("blur_m", &options->beam.blur_m);
   beam.Read("blur_per_m", &options->beam.blur_per_m);
   beam.Read("hit_band_m", &options->beam.hit_band_m);
+  beam.Read("line_sigma_m", &options->beam.line_sigma_m);
   beam.RefuseUnknownKeys();
   YamlSection background = section.Section("background");
   background.Read("is_used", &options->background.is_used);

@@ -8,6 +8,11 @@ namespace {
 
 constexpr std::uint8_t kNoSector = 255;
 
+double SlopeOf(double x, double y, double z) {
+  constexpr double kTiny = 1e-9;  // straight up or down is steep enough
+  return z / std::max(std::hypot(x, y), kTiny);
+}
+
 std::size_t SectorOf(double pseudo_azimuth, std::size_t num_sectors) {
   return static_cast<std::size_t>(pseudo_azimuth / 4.0 * static_cast<double>(num_sectors)) %
          num_sectors;
@@ -49,6 +54,9 @@ BeamIndex::BeamIndex(const PointCloud& cloud_lidar_m, double min_range_m)
     const std::size_t sector = SectorOf(PseudoAzimuth(position_m.x(), position_m.y()), kNumSectors);
     sectors[i] = static_cast<std::uint8_t>(sector);
     ++begin_[sector + 1];
+    const double slope = SlopeOf(position_m.x(), position_m.y(), position_m.z());
+    lowest_slope_ = std::min(lowest_slope_, slope);
+    highest_slope_ = std::max(highest_slope_, slope);
   }
   for (std::size_t i = 0; i < kNumSectors; ++i) begin_[i + 1] += begin_[i];
   points_.resize(begin_[kNumSectors]);
@@ -56,6 +64,13 @@ BeamIndex::BeamIndex(const PointCloud& cloud_lidar_m, double min_range_m)
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (sectors[i] != kNoSector) points_[next[sectors[i]]++] = static_cast<std::uint32_t>(i);
   }
+}
+
+bool BeamIndex::Covers(const Eigen::Vector3d& direction) const {
+  const double slope = SlopeOf(direction.x(), direction.y(), direction.z());
+  if (slope < lowest_slope_ || slope > highest_slope_) return false;
+  const std::size_t sector = SectorOf(PseudoAzimuth(direction.x(), direction.y()), kNumSectors);
+  return begin_[sector] < begin_[sector + 1];
 }
 
 void BeamIndex::AppendCone(const Eigen::Vector3d& axis,

@@ -38,6 +38,10 @@ class BeamIndex {
   /// @param cloud_lidar_m  borrowed; its returns nearer than `min_range_m` are left out.
   BeamIndex(const PointCloud& cloud_lidar_m, double min_range_m);
 
+  /// Whether the sensor looks in a `direction` at all: other returns are as high and as low, and
+  /// some have its azimuth. Then a beam without a return has met the sky.
+  bool Covers(const Eigen::Vector3d& direction) const;
+
   /// Appends the beams within `half_angle_rad` of `axis` (unit length).
   void AppendCone(const Eigen::Vector3d& axis,
                   double half_angle_rad,
@@ -49,6 +53,8 @@ class BeamIndex {
   const PointCloud* cloud_lidar_m_;
   std::vector<std::uint32_t> points_;                 // by sector, then as they came
   std::array<std::size_t, kNumSectors + 1> begin_{};  // of each sector
+  double lowest_slope_ = 0.0;                         // z over the distance from the axis...
+  double highest_slope_ = 0.0;                        // ...of all returns
 };
 
 }  // namespace voqcal

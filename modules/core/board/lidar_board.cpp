@@ -113,6 +113,7 @@ std::vector<std::string> LidarBeamOptions::Problems() const {
   require(blur_m > 0, "blur_m must be positive", blur_m);
   require(blur_per_m >= 0, "blur_per_m must not be negative", blur_per_m);
   require(hit_band_m > 0, "hit_band_m must be positive", hit_band_m);
+  require(line_sigma_m >= 0, "line_sigma_m must not be negative", line_sigma_m);
   return problems;
 }
 
@@ -128,6 +129,7 @@ std::vector<std::string> LidarBoardOptions::Problems() const {
   require(max_range_m > min_range_m && std::isfinite(max_range_m),
           "max_range_m must be finite and above min_range_m",
           max_range_m);
+  require(max_corner_sigma_m > 0, "max_corner_sigma_m must be positive", max_corner_sigma_m);
   require(max_bend_m > 0, "max_bend_m must be positive", max_bend_m);
   require(thickness_m >= 0, "thickness_m must not be negative", thickness_m);
   require(thickness_sigma_m > 0, "thickness_sigma_m must be positive", thickness_sigma_m);

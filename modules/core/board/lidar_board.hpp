@@ -32,6 +32,7 @@ struct LidarBeamOptions {
   /// Returns so far before or behind the plane are of the board. Scan lines of one lidar differ by
   /// up to 30 mm and dark from bright squares by 15 mm, both on top of 10 mm of noise (1 sigma).
   double hit_band_m = 0.05;
+  double line_sigma_m = 0.008;  ///< Offset of one scan line (laser) from the others, 1 sigma.
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;
@@ -42,7 +43,8 @@ struct LidarBoardOptions {
   double min_range_m = 0.5;   ///< Nearer returns are the robot itself.
   double max_range_m = 12.0;  ///< Farther boards have too few points to measure.
   std::optional<RegionOfInterest> region_of_interest;  ///< Not needed; narrows the search.
-  double max_bend_m = 0.02;   ///< A board that is certainly more bent is refused.
+  double max_corner_sigma_m = 0.04;  ///< A board whose outline is less certain is refused.
+  double max_bend_m = 0.02;          ///< A board that is certainly more bent is refused.
   double thickness_m = 0.01;  ///< Of the board: a plate has a few millimetres, foam 20 or so...
   double thickness_sigma_m = 0.01;  ///< ...and how little is known of it (1 sigma).
   LidarBeamOptions beam;

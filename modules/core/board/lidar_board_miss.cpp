@@ -16,6 +16,8 @@ std::string ToString(LidarBoardMiss miss) {
       return "outline open: the field of view ends";
     case LidarBoardMiss::kHidden:
       return "outline open: something stands before it";
+    case LidarBoardMiss::kLoose:
+      return "too few beams tell its outline";
     case LidarBoardMiss::kBent:
       return "board bent";
     case LidarBoardMiss::kAmbiguous:

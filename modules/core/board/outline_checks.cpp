@@ -83,19 +83,21 @@ bool CouldShowBoard(const std::vector<OutlineBeam>& beams, const OutlineModel& m
              std::max(kMaxHitsOutside * (outside[0] + outside[1]), kMaxHitsPerOwn * num_own);
 }
 
-bool IsSeen(const OutlineEdge& edge, double max_short_m) {
+bool IsClosed(const OutlineEdge& edge) {
   constexpr int kMinMisses = 2;
-  return edge.num_misses >= kMinMisses || edge.reach_m > -max_short_m;
+  return edge.num_misses >= kMinMisses;
 }
 
 std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
+                                    const std::array<bool, 4>& is_covered,
                                     const Agreement& agreement,
                                     double max_short_m,
                                     double slack) {
   constexpr double kMinCovered = 0.8;
   std::optional<std::size_t> open;
   for (std::size_t i = 0; i < 4; ++i) {
-    if (IsSeen(edges[i], slack * max_short_m)) continue;
+    const bool is_up_to_it = is_covered[i] && edges[i].reach_m > -slack * max_short_m;
+    if (IsClosed(edges[i]) || is_up_to_it) continue;
     if (!open || edges[i].reach_m < edges[*open].reach_m) open = i;
   }
   if (open || agreement.covered >= kMinCovered / slack) return open;
@@ -106,17 +108,60 @@ std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
 bool AreLengthsRight(const std::array<double, 4>& measured_m,
                      const std::array<OutlineEdge, 4>& edges,
                      const std::array<double, 4>& true_m) {
-  constexpr double kOpenM = 0.03;
-  constexpr double kNumSigmas = 4.0;
-  constexpr double kMaxErrorM = 0.15;
-  for (std::size_t i = 0; i < 4; ++i) {
-    // Edge i reaches from the edge before it to the one after it.
+  struct Tolerance {
+    double open_m;
+    double num_sigmas;
+    double largest_m;
+
+    bool Holds(double error_m, double sigma_m) const {
+      return std::abs(error_m) <= std::min(open_m + num_sigmas * sigma_m, largest_m);
+    }
+  };
+  constexpr Tolerance kOfOne{0.03, 4.0, 0.15};
+  constexpr Tolerance kOfMean{0.02, 2.0, 0.08};
+  for (std::size_t i = 0; i < 2; ++i) {
+    // Edge i and the one opposite reach from the edge before to the edge after.
     const double sigma_m =
-        std::hypot(edges[(i + 3) % 4].offset_sigma_m, edges[(i + 1) % 4].offset_sigma_m);
-    const double max_error_m = std::min(kOpenM + kNumSigmas * sigma_m, kMaxErrorM);
-    if (!(std::abs(measured_m[i] - true_m[i]) <= max_error_m)) return false;
+        std::hypot(edges[(i + 3) % 4].offset_sigma_m, edges[i + 1].offset_sigma_m);
+    const double error_m = measured_m[i] - true_m[i];
+    const double opposite_error_m = measured_m[i + 2] - true_m[i + 2];
+    if (!kOfOne.Holds(error_m, sigma_m) || !kOfOne.Holds(opposite_error_m, sigma_m) ||
+        !kOfMean.Holds((error_m + opposite_error_m) / 2, sigma_m)) {
+      return false;
+    }
   }
   return true;
+}
+
+std::optional<std::size_t> ScreenedEdge(const std::vector<OutlineBeam>& beams,
+                                        const std::vector<Eigen::Vector2d>& blocked_m,
+                                        const OutlineModel& model,
+                                        const RectanglePose& pose) {
+  constexpr double kPastM = 0.15;
+  constexpr int kMinBlocked = 3;  // fewer are stray
+  const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
+  const Eigen::Array2d half_m(model.width_m / 2, model.height_m / 2);
+  // The edge just past which a place is; none for the corners and for what is inside or far.
+  const auto edge_before = [&](const Eigen::Vector2d& p_m) -> std::optional<std::size_t> {
+    const Eigen::Vector2d q_m = T_rectangle_plane * p_m;
+    const Eigen::Array2d out_m = q_m.array().abs() - half_m;
+    if ((out_m > 0).all() || (out_m <= 0).all() || out_m.maxCoeff() > kPastM) return {};
+    if (out_m.x() > 0) return q_m.x() > 0 ? 1 : 3;
+    return q_m.y() > 0 ? 2 : 0;
+  };
+  std::array<int, 4> num_blocked{};
+  std::array<int, 4> num_misses{};
+  for (const Eigen::Vector2d& p_m : blocked_m) {
+    if (const auto edge = edge_before(p_m)) ++num_blocked[*edge];
+  }
+  for (const OutlineBeam& beam : beams) {
+    if (beam.is_hit) continue;
+    if (const auto edge = edge_before(beam.position_m)) ++num_misses[*edge];
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (num_blocked[i] >= kMinBlocked && num_blocked[i] > num_misses[i]) return i;
+  }
+  return {};
 }
 
 bool IsHidden(const std::vector<Eigen::Vector2d>& blocked_m,

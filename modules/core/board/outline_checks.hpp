@@ -30,22 +30,35 @@ Agreement Compare(const std::vector<OutlineBeam>& beams,
 /// over a disc well inside it, hardly any beyond its diagonal. Cheap: most patches fail it.
 bool CouldShowBoard(const std::vector<OutlineBeam>& beams, const OutlineModel& model);
 
-/// An edge is seen if beams miss beyond it, or if at least the hits come up to it, to within
-/// `max_short_m`.
-bool IsSeen(const OutlineEdge& edge, double max_short_m);
+/// Whether so many beams miss beyond an edge that it is certain to be there.
+bool IsClosed(const OutlineEdge& edge);
 
 /// The edge (in BoardSpec's order) on whose side the board does not show where it ends, or is not
-/// seen itself. `slack` above 1 loosens it for a rough fit.
+/// seen itself. An edge that is not closed may still be seen: where beams past it would have come
+/// back from nothing (the sky), the hits must come up to it, to within `max_short_m`.
+///
+/// @param is_covered  Whether the sensor looks past each edge.
+/// @param slack       Above 1 it loosens the test for a rough fit.
 std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
+                                    const std::array<bool, 4>& is_covered,
                                     const Agreement& agreement,
                                     double max_short_m,
                                     double slack = 1.0);
 
-/// Whether the edges, measured freely, are as long as they should be: to within 30 mm (what spill,
-/// thickness and single scan lines leave open) and four standard errors, but never 150 mm.
+/// Whether the edges, measured freely, are as long as they should be: each to within 30 mm (what
+/// spill, thickness and single scan lines leave open) and four standard errors, but never 150 mm;
+/// two opposite ones, which tilted lines lengthen and shorten, in the mean to within 20 mm and two,
+/// but never 80 mm.
 bool AreLengthsRight(const std::array<double, 4>& measured_m,
                      const std::array<OutlineEdge, 4>& edges,
                      const std::array<double, 4>& true_m);
+
+/// The edge past which more beams end in front of the plane than behind it: there the board may go
+/// on, behind whatever stands before it.
+std::optional<std::size_t> ScreenedEdge(const std::vector<OutlineBeam>& beams,
+                                        const std::vector<Eigen::Vector2d>& blocked_m,
+                                        const OutlineModel& model,
+                                        const RectanglePose& pose);
 
 /// Whether something stands before the half of the rectangle towards `edge`, or just past it.
 bool IsHidden(const std::vector<Eigen::Vector2d>& blocked_m,

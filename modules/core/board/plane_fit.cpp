@@ -62,9 +62,11 @@ Eigen::Matrix3d PlaneCovariance(const std::vector<Eigen::Vector3d>& points_m,
                                 const PlaneFit& plane,
                                 const Eigen::Vector3d& centre_m,
                                 const Eigen::Vector3d& e1,
-                                const Eigen::Vector3d& e2) {
+                                const Eigen::Vector3d& e2,
+                                double line_sigma_m) {
   // A point's distance changes by J * [tilt1; tilt2; offset], J = -[y, -x, 1] in the plane's axes.
   constexpr double kNumParameters = 3.0;
+  constexpr double kNumLinesExpected = 4.0;  // the weight of what is expected of a line
   struct Line {
     double num = 0.0;
     double sum_m = 0.0;  // of distances
@@ -99,10 +101,12 @@ Eigen::Matrix3d PlaneCovariance(const std::vector<Eigen::Vector3d>& points_m,
     line_spread += line.J * line.J.transpose();
   }
   // The plane takes three of the lines' means; noise moves each of the others by within / num.
-  between_m2 /= std::max(num_lines - kNumParameters, 1.0);
-  for (const auto& [ring, line] : lines) between_m2 -= within_m2 / (line.num * num_lines);
+  const double freedom = std::max(num_lines - kNumParameters, 0.0);
+  for (const auto& [ring, line] : lines) between_m2 -= freedom / num_lines * within_m2 / line.num;
+  between_m2 = (std::max(between_m2, 0.0) + kNumLinesExpected * line_sigma_m * line_sigma_m) /
+               (freedom + kNumLinesExpected);
   const Eigen::Matrix3d inverse = information.inverse();
-  return inverse * (within_m2 * information + std::max(between_m2, 0.0) * line_spread) * inverse;
+  return inverse * (within_m2 * information + between_m2 * line_spread) * inverse;
 }
 
 }  // namespace voqcal

@@ -65,6 +65,7 @@ Eigen::Matrix3d PlaneCovariance(const std::vector<Eigen::Vector3d>& points_m,
                                 const PlaneFit& plane,
                                 const Eigen::Vector3d& centre_m,
                                 const Eigen::Vector3d& e1,
-                                const Eigen::Vector3d& e2);
+                                const Eigen::Vector3d& e2,
+                                double line_sigma_m);
 
 }  // namespace voqcal

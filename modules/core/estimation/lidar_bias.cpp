@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <sstream>
+#include <utility>
 
 #include "core/board/plane_fit.hpp"
 
@@ -41,15 +42,7 @@ std::string BiasEstimate::Text() const {
   return text.str();
 }
 
-double ShadeScale::ShadeOf(float intensity) const {
-  if (!(bright_intensity > dark_intensity)) return 0.0;
-  const double brightness = (intensity - dark_intensity) / (bright_intensity - dark_intensity);
-  return 0.5 - std::clamp(brightness, 0.0, 1.0);
-}
-
 ShadeScale MakeShadeScale(const std::vector<const BoardSample*>& samples) {
-  constexpr double kDarkShare = 0.15;
-  constexpr double kBrightShare = 0.85;
   std::vector<float> intensities;
   for (const BoardSample* sample : samples) {
     if (!sample->lidar.points_lidar_m.has_intensity) continue;
@@ -57,14 +50,7 @@ ShadeScale MakeShadeScale(const std::vector<const BoardSample*>& samples) {
       intensities.push_back(point.intensity);
     }
   }
-  if (intensities.empty()) return {};
-  std::sort(intensities.begin(), intensities.end());
-  const auto at = [&intensities](double share) {
-    return static_cast<double>(
-        intensities[static_cast<std::size_t>(share * static_cast<double>(intensities.size() - 1))]);
-  };
-  const double dark = at(kDarkShare);
-  return {dark, 0.5 * (dark + at(kBrightShare))};
+  return ShadeScaleOf(std::move(intensities));
 }
 
 bool LidarBias::IsObservable() const {

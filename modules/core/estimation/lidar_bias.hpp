@@ -9,6 +9,7 @@
 
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
+#include "core/board/shade_scale.hpp"
 #include "core/lidar/point_cloud.hpp"
 
 namespace voqcal {
@@ -25,17 +26,7 @@ struct BiasEstimate {
   std::string Text() const;  ///< "12.3 +- 0.8 mm" or "unobservable".
 };
 
-/// How dark a return is: +1/2 on dark surfaces, -1/2 on bright ones.
-struct ShadeScale {
-  double dark_intensity = 0.0;
-  double bright_intensity = 0.0;  ///< Not above dark_intensity: shades are not told apart.
-
-  double ShadeOf(float intensity) const;
-};
-
-/// The scale of the boards' points: their 15th percentile is dark, and bright begins half-way to
-/// the 85th, as bright squares lose intensity with range and slant, but dark ones have none to
-/// lose. No scale without intensities.
+/// The scale of all the boards' points.
 ShadeScale MakeShadeScale(const std::vector<const BoardSample*>& samples);
 
 /// Systematic errors of a lidar. Ranges: measured = true + common + dark_step * shade + ring

@@ -15,6 +15,7 @@ enum class NoiseUse : std::uint64_t {
   kPixelTable,
   kPixelRow,
   kClutter,
+  kPointing,
 };
 
 /// Random numbers without state: each is a hash of (seed, use, frame time, index), so it does not

@@ -100,6 +100,7 @@ PointCloud LidarSimulator::Sweep(const Eigen::Isometry3d& T_lidar_board,
   const Moving moving(T_lidar_board, board_, room_.FloorZM(), options_.beam_divergence_rad);
   const KeyedNoise range_noise(options_.seed, NoiseUse::kRange, frame_us);
   const KeyedNoise dropout_noise(options_.seed, NoiseUse::kDropout, frame_us);
+  const KeyedNoise pointing_noise(options_.seed, NoiseUse::kPointing, frame_us);
   PointCloud cloud;
   cloud.has_intensity = cloud.has_time = true;
   cloud.has_ring = HasRings(options_.scan.pattern);
@@ -108,9 +109,11 @@ PointCloud LidarSimulator::Sweep(const Eigen::Isometry3d& T_lidar_board,
     if (dropout_noise.Uniform(beam) < options_.dropout) continue;
     const Eigen::Vector3d& direction = beams[beam].direction;
     const int emitter = beams[beam].emitter;
-    const Echo echo = moving.MayMeet(direction)
-                          ? EchoWithMoving(direction, moving, room_echoes[beam])
-                          : room_echoes[beam];
+    const Echo echo =
+        moving.MayMeet(direction)
+            ? EchoWithMoving(
+                  Astray(direction, pointing_noise.Normals(beam)), moving, room_echoes[beam])
+            : room_echoes[beam];
     const auto [range_normal, intensity_normal] = range_noise.Normals(beam);
     const double range_m = echo.range_m + echo.bias_m + options_.common_bias_m +
                            emitter_bias_m_[emitter] + options_.range_noise_m * range_normal;
@@ -134,11 +137,12 @@ BoardHits LidarSimulator::CountBoardHits(const Eigen::Isometry3d& T_lidar_board,
   const std::vector<ScanBeam>& beams = is_repeating ? beams_ : own_beams;
   const Moving moving(T_lidar_board, board_, room_.FloorZM(), options_.beam_divergence_rad);
   const KeyedNoise dropout_noise(options_.seed, NoiseUse::kDropout, frame_us);
+  const KeyedNoise pointing_noise(options_.seed, NoiseUse::kPointing, frame_us);
   std::set<int> emitters;
   BoardHits hits;
   for (std::size_t beam = 0; beam < beams.size(); ++beam) {
-    const Eigen::Vector3d& direction = beams[beam].direction;
-    if (!moving.board_cone.Holds(direction)) continue;
+    if (!moving.board_cone.Holds(beams[beam].direction)) continue;
+    const Eigen::Vector3d direction = Astray(beams[beam].direction, pointing_noise.Normals(beam));
     if (dropout_noise.Uniform(beam) < options_.dropout) continue;
     if (Cast(direction, &moving, SolidsNear(direction)).surface != kBoardSurface) continue;
     ++hits.num_points;
@@ -146,6 +150,14 @@ BoardHits LidarSimulator::CountBoardHits(const Eigen::Isometry3d& T_lidar_board,
   }
   if (HasRings(options_.scan.pattern)) hits.num_rings = static_cast<int>(emitters.size());
   return hits;
+}
+
+Eigen::Vector3d LidarSimulator::Astray(const Eigen::Vector3d& direction,
+                                       const std::pair<double, double>& normals) const {
+  const Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(direction).normalized();
+  const Eigen::Vector3d up = direction.cross(left);
+  return (direction + options_.pointing_noise_rad * (normals.first * left + normals.second * up))
+      .normalized();
 }
 
 std::vector<LidarSimulator::Echo> LidarSimulator::RoomEchoes(

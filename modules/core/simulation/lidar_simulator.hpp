@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -45,6 +46,9 @@ class LidarSimulator {
   struct Moving;  ///< Board and stand at one time.
   struct Hit;     ///< Where one ray of a beam ends.
 
+  /// Where a beam that is said to go in `direction` goes by chance: two standard normal numbers.
+  Eigen::Vector3d Astray(const Eigen::Vector3d& direction,
+                         const std::pair<double, double>& normals) const;
   std::vector<int> SolidsNear(const Eigen::Vector3d& direction) const;
   Hit CastMoving(const Eigen::Vector3d& direction, const Moving& moving) const;
   Hit Cast(const Eigen::Vector3d& direction,

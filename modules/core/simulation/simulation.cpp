@@ -81,6 +81,9 @@ std::vector<std::string> SimulationOptions::Problems() const {
   require(beam_divergence_rad >= 0 && beam_divergence_rad <= 0.05,
           "beam_divergence_rad must be within 0 and 0.05",
           beam_divergence_rad);
+  require(pointing_noise_rad >= 0 && pointing_noise_rad <= 0.01,
+          "pointing_noise_rad must be within 0 and 0.01",
+          pointing_noise_rad);
   require(dropout >= 0 && dropout < 1, "dropout must be within 0 and 1", dropout);
   require_sigma("image_noise must not be negative", image_noise);
   require(image_blur_px >= 0 && image_blur_px <= 10,

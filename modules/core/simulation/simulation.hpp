@@ -36,7 +36,10 @@ struct SimulationOptions {
   double dark_bias_m = 0.0075;   ///< Dark squares read longer by this, bright ones shorter.
   double intensity_noise = 1.0;  ///< 1 sigma of one return's intensity; a white surface reads 100.
   double beam_divergence_rad = 0.003;  ///< Full width of a beam; mixed pixels come from it.
-  double dropout = 0.01;               ///< Share of beams without a return.
+  /// 1 sigma of where a beam goes about where it says it goes: with it the edges of boards are as
+  /// blurred as a real VLP-16's.
+  double pointing_noise_rad = 0.0013;
+  double dropout = 0.01;              ///< Share of beams without a return.
   // Camera.
   double image_noise = 2.0;    ///< 1 sigma, grey levels of 255.
   double image_blur_px = 0.5;  ///< 1 sigma of the lens' blur.

@@ -23,6 +23,16 @@ struct NormalisedError {
   int num = 0;
 };
 
+PointCloud WithLineOffsets(PointCloud cloud, double sigma_m, std::mt19937* random) {
+  std::map<std::uint16_t, float> offset_m;
+  for (LidarPoint& point : cloud.points) {
+    const auto [line, is_new] = offset_m.try_emplace(point.ring);
+    if (is_new) line->second = static_cast<float>(sigma_m * test::UnitGaussian(random));
+    point.position_m += line->second * point.position_m.normalized();
+  }
+  return cloud;
+}
+
 NormalisedError OverRandomBoards(double noise_m, int num_boards) {
   NormalisedError mean;
   std::mt19937 random(11);
@@ -41,7 +51,8 @@ NormalisedError OverRandomBoards(double noise_m, int num_boards) {
     const double tilt_y_deg = Uniform(&random, -35, 35);
     const double tilt_x_deg = Uniform(&random, -35, 35);
     scene.T_lidar_board = test::FacingBoard({x_m, y_m, z_m}, roll_deg, tilt_y_deg, tilt_x_deg);
-    const auto found = DetectLidarBoard(test::SynthesizeLidarBoard(scene), scene.board, {});
+    const PointCloud cloud = WithLineOffsets(test::SynthesizeLidarBoard(scene), 0.008, &random);
+    const auto found = DetectLidarBoard(cloud, scene.board, {});
     if (!found) continue;
     const BoardPose& pose = found->front().pose;
     const Eigen::Vector3d centre_error_m = pose.centre_m - scene.T_lidar_board.translation();

@@ -112,13 +112,14 @@ TEST(DetectLidarBoard, ErrorStaysWithinItsCovariance) {
 TEST(DetectLidarBoard, MeasuresEdgesFreely) {
   SyntheticLidarBoardOptions scene = Diamond();
   const BoardSpec nominal = scene.board;
-  scene.board.width_m += 0.04;  // the board is 40 mm wider than it is said to be
+  constexpr double kWiderM = 0.02;  // than it is said to be
+  scene.board.width_m += kWiderM;
   const auto found = DetectLidarBoard(SynthesizeLidarBoard(scene), nominal, {});
   ASSERT_TRUE(found) << ToString(found.error());
   const auto& lengths_m = found->front().edge_lengths_m;
   // Two lines, each at kSpacingTolM; the prior of 10 mm thickness takes up to 10 mm * tan(20 deg).
-  EXPECT_NEAR(lengths_m[0], nominal.width_m + 0.04, 4 * kSpacingTolM);
-  EXPECT_NEAR(lengths_m[2], nominal.width_m + 0.04, 4 * kSpacingTolM);
+  EXPECT_NEAR(lengths_m[0], nominal.width_m + kWiderM, 4 * kSpacingTolM);
+  EXPECT_NEAR(lengths_m[2], nominal.width_m + kWiderM, 4 * kSpacingTolM);
   EXPECT_NEAR(lengths_m[1], nominal.height_m, 4 * kSpacingTolM);
   EXPECT_NEAR(lengths_m[3], nominal.height_m, 4 * kSpacingTolM);
 }

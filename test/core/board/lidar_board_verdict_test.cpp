@@ -60,6 +60,31 @@ TEST(LidarBoardVerdict, EndOfTheFieldOfViewIsNamed) {
   EXPECT_EQ("outline open: the field of view ends on the left", VerdictOn(cut));
 }
 
+TEST(LidarBoardVerdict, SurfaceThatTheFieldOfViewCutsToTheBoardsHeightIsNone) {
+  // A panel as wide as the board and much taller; the sensor sees its upper 0.8 m.
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  scene.board.height_m = 2.0;
+  scene.T_lidar_board = FacingBoard({2.3, 0.0, -0.6}, 0.0);
+  const PointCloud whole = SynthesizeLidarBoard(scene);
+  PointCloud cut = whole;
+  cut.points.clear();
+  for (const LidarPoint& point : whole.points) {
+    if (point.position_m.z() > -0.4F / 2.3F * point.position_m.x()) cut.points.push_back(point);
+  }
+  EXPECT_EQ("outline open: the field of view ends at the bottom", VerdictOn(cut));
+}
+
+TEST(LidarBoardVerdict, SurfaceThatIsScreenedToTheBoardsSizeIsNone) {
+  // Twice as wide as the board; what stands before it on the right leaves as much as a board.
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  scene.board.width_m = 1.22;
+  scene.boxes.push_back(Pillar(-0.4, 0.4));
+  EXPECT_EQ("outline open: something stands before it on the right",
+            VerdictOn(SynthesizeLidarBoard(scene)));
+}
+
 TEST(LidarBoardVerdict, BentBoardIsNamedWithItsBend) {
   SyntheticLidarBoardOptions scene = UprightBoard();
   scene.num_rings = 64;

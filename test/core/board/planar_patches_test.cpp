@@ -84,6 +84,24 @@ TEST(BeamIndex, FindsWhatAScanOfAllBeamsFinds) {
   }
 }
 
+TEST(BeamIndex, CoversWhereOtherReturnsAreAsHighAndSomeHaveTheAzimuth) {
+  PointCloud cloud;
+  for (int azimuth_deg = -60; azimuth_deg <= 60; ++azimuth_deg) {
+    for (const float slope : {-0.2F, 0.0F, 0.2F}) {
+      const double azimuth_rad = azimuth_deg * M_PI / 180;
+      LidarPoint point;
+      point.position_m =
+          3.0F * Eigen::Vector3d(std::cos(azimuth_rad), std::sin(azimuth_rad), slope).cast<float>();
+      cloud.points.push_back(point);
+    }
+  }
+  const BeamIndex index(cloud, 0.5);
+  EXPECT_TRUE(index.Covers({2.0, 0.5, 0.3}));
+  EXPECT_FALSE(index.Covers({2.0, 0.5, 0.5}));   // higher than any return
+  EXPECT_FALSE(index.Covers({2.0, 0.5, -0.5}));  // lower
+  EXPECT_FALSE(index.Covers({-2.0, 0.5, 0.0}));  // behind the sensor
+}
+
 TEST(IsInShare, TakesEvenlyWhateverThePeriod) {
   for (const std::size_t period : {1U, 2U, 16U, 64U, 128U}) {
     int num = 0;

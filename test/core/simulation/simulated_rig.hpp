@@ -69,6 +69,7 @@ inline SimulatedRig CleanRig(LensModel lens = LensModel::kPlumbBob) {
   rig.options.dark_bias_m = 0.0;
   rig.options.intensity_noise = 0.0;
   rig.options.beam_divergence_rad = 0.0;
+  rig.options.pointing_noise_rad = 0.0;
   rig.options.dropout = 0.0;
   rig.options.image_noise = 0.0;
   return rig;

@@ -59,14 +59,11 @@ void AddField(const std::string& name, Datatype datatype, pointcloud2_t* message
   message->point_step += NumBytesOf(datatype);
 }
 
+/// Writes one number at `*end` and moves it on.
 template <typename T>
-void Append(T value, std::vector<std::uint8_t>* data) {
-  static_assert(sizeof(T) <= 4);
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof(T));  // little-endian host, as x86-64 and arm64 are
-  for (std::size_t i = 0; i < sizeof(T); ++i) {
-    data->push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
-  }
+void Put(T value, std::uint8_t** end) {
+  std::memcpy(*end, &value, sizeof(T));  // little-endian host, as x86-64 and arm64 are
+  *end += sizeof(T);
 }
 
 // ---- Reading.
@@ -103,6 +100,12 @@ class FieldReader {
   }
 
   double Read(const std::uint8_t* point) const {
+    // Nearly all numbers of nearly all drivers, and at 2.6 million points a second they count.
+    if (datatype_ == kFloat32 && !is_big_endian_) {
+      float value = 0;
+      std::memcpy(&value, point + offset_, sizeof(value));
+      return value;
+    }
     const std::uint64_t bits = Bits(point + offset_);
     switch (datatype_) {
       case kInt8:
@@ -213,13 +216,14 @@ pointcloud2_t ToMessage(const PointCloud& cloud_lidar_m, std::int64_t utime, std
   if (cloud_lidar_m.has_ring) AddField("ring", kUint16, &message);
   if (cloud_lidar_m.has_time) AddField("time", kFloat32, &message);
 
-  message.data.reserve(cloud_lidar_m.points.size() * static_cast<std::size_t>(message.point_step));
+  message.data.resize(cloud_lidar_m.points.size() * static_cast<std::size_t>(message.point_step));
+  std::uint8_t* end = message.data.data();
   bool is_dense = true;
   for (const LidarPoint& point : cloud_lidar_m.points) {
-    for (const float coordinate : point.position_m) Append(coordinate, &message.data);
-    if (cloud_lidar_m.has_intensity) Append(point.intensity, &message.data);
-    if (cloud_lidar_m.has_ring) Append(point.ring, &message.data);
-    if (cloud_lidar_m.has_time) Append(point.time_s, &message.data);
+    for (const float coordinate : point.position_m) Put(coordinate, &end);
+    if (cloud_lidar_m.has_intensity) Put(point.intensity, &end);
+    if (cloud_lidar_m.has_ring) Put(point.ring, &end);
+    if (cloud_lidar_m.has_time) Put(point.time_s, &end);
     is_dense = is_dense && point.position_m.allFinite();
   }
   message.height = 1;

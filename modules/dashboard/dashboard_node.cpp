@@ -121,14 +121,21 @@ void DashboardNode::OnPoints(const pointcloud2_t& message) {
 }
 
 void DashboardNode::OnEvent(const event_t& message) {
-  if (!events_.empty() && Cause(events_.front().event) == Cause(message) &&
-      message.kind == "rejected") {
-    events_.front() = {message, events_.front().count + 1};
-  } else {
-    events_.push_front({message, 1});
-  }
+  events_.push_front({message, 1 + TakeSameRejects(message)});
   if (events_.size() > kMaxEvents) events_.pop_back();
   Show(Slot::kEvents, EventsJson(events_));
+}
+
+int DashboardNode::TakeSameRejects(const event_t& message) {
+  if (message.kind != "rejected") return 0;
+  for (auto each = events_.begin(); each != events_.end(); ++each) {
+    if (each->event.kind != "rejected") return 0;
+    if (Cause(each->event) != Cause(message)) continue;
+    const int count = each->count;
+    events_.erase(each);
+    return count;
+  }
+  return 0;
 }
 
 void DashboardNode::SendCommand(const PageRequest& request) {
@@ -160,7 +167,7 @@ void DashboardNode::ShowResult() {
                         refined_->samples_sha256 == assessment_->samples_sha256;
   const std::string working_on = WorkingOn();
   if (!is_whole) {
-    if (working_on.empty()) Show(Slot::kResult, NoResultJson(refined_->problem, ""));
+    if (working_on.empty()) ShowNoResult(refined_->problem);
     return;
   }
   OfferExports();
@@ -172,6 +179,13 @@ void DashboardNode::ShowResult() {
                   IsMadeFrom(*samples_, *assessment_),
                   working_on,
                   exports_));
+}
+
+void DashboardNode::ShowNoResult(const std::string& problem) {
+  exports_.clear();
+  exports_sha256_.clear();
+  server_.Offer({});
+  Show(Slot::kResult, NoResultJson(problem, ""));
 }
 
 void DashboardNode::OfferExports() {

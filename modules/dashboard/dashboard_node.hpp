@@ -45,10 +45,13 @@ class DashboardNode : public Module {
   void OnImage(const image_t& message);
   void OnPoints(const pointcloud2_t& message);
   void OnEvent(const event_t& message);
+  /// Removes the reject of the same cause since the last other event. @return its count.
+  int TakeSameRejects(const event_t& message);
   void SendCommand(const PageRequest& request);
 
   void ShowSamples();
   void ShowResult();
+  void ShowNoResult(const std::string& problem);
   void OfferExports();
   std::vector<BoardSample> TakenSamples() const;
   std::optional<Eigen::Isometry3d> Extrinsic() const;
@@ -68,7 +71,7 @@ class DashboardNode : public Module {
   Clock::time_point next_image_;
   Clock::time_point next_cloud_;
   Heartbeats heartbeats_;
-  std::deque<CountedEvent> events_;  ///< The newest first.
+  std::deque<CountedEvent> events_;  ///< The newest first; rejects of one cause together.
   bool is_state_new_ = false;        ///< Samples or what is made of them changed.
   std::optional<samples_t> samples_;
   std::optional<voq_sets_t> sets_;

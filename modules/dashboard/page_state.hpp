@@ -50,7 +50,7 @@ std::string LidarBoardJson(const lidar_board_t& message);
 std::string CameraBoardJson(const camera_board_t& message, const CameraModel& camera);
 std::string GuidanceJson(const next_pose_t& message);
 
-/// An event, and how often in a row it was the same.
+/// An event, and how often there was one of the same cause.
 struct CountedEvent {
   event_t event;
   int count = 1;

@@ -1,28 +1,12 @@
 // report_in_browser.mjs REPORT [FOLDER]: opens a report as people do, in a browser at the sizes of a desk and a
 // phone, and ends with 1 and a line for each thing that is wrong. With FOLDER it leaves screenshots there.
 // 77: no Chromium here.
-import { execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
-import { createRequire } from "node:module";
-import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
+import { SIZES, openBrowser } from "./browser.mjs";
 
-const require = createRequire(new URL("../../tools/node/package.json", import.meta.url));
-const { chromium } = require("playwright-core");
-
-const SIZES = { desktop: { width: 1280, height: 900 }, phone: { width: 390, height: 844 } };
 const SECTIONS = ["transform", "errors", "sets", "lidar", "scene", "diagnosis", "poses", "rejected", "made-from"];
 const MAX_PICTURE_HEIGHT = 12_000;
-
-function chromiumPath() {
-  try {
-    return execFileSync("sh", ["-c", "command -v chromium"]).toString().trim();
-  } catch {
-    process.stdout.write("skipped: no chromium (tools/setup installs it)\n");
-    process.exit(77);
-  }
-}
 
 /** Runs in the page: what is wrong with it. */
 function inspect(sections) {
@@ -55,20 +39,7 @@ function inspect(sections) {
 
 const [report, folder] = process.argv.slice(2);
 const url = pathToFileURL(resolve(report)).href;
-const executablePath = chromiumPath();
-const profile = mkdtempSync(join(tmpdir(), "voqcal-chromium-"));
-const context = await chromium.launchPersistentContext(profile, {
-  executablePath,
-  headless: true,
-  args: [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-  ],
-});
+const { context, close } = await openBrowser(["--disable-gpu"]);
 const problems = [];
 for (const [name, size] of Object.entries(SIZES)) {
   const page = await context.newPage();
@@ -90,7 +61,6 @@ for (const [name, size] of Object.entries(SIZES)) {
   }
   await page.close();
 }
-await context.close();
-rmSync(profile, { recursive: true, force: true });
+await close();
 for (const problem of problems) process.stdout.write(`${problem}\n`);
 process.exitCode = problems.length === 0 ? 0 : 1;

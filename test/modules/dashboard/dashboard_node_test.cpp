@@ -142,12 +142,13 @@ TEST_F(DashboardNodeTest, CountsRejectsOfOneCause) {
   SendEvent("rejected", "board is moving: 0.12 m", 2);
   SendEvent("rejected", "board is moving: 0.13 m", 3);
   SendEvent("rejected", "pose is not new", 4);
+  SendEvent("rejected", "board is moving: 0.14 m", 5);
   test::SocketClient page = Page();
   const Json events = Next(&page, "events")["events"];
   ASSERT_EQ(events.size(), 3U);
-  EXPECT_EQ(events[0]["reason"], "pose is not new");
-  EXPECT_EQ(events[1]["reason"], "board is moving: 0.13 m");
-  EXPECT_EQ(events[1]["count"], 2);
+  EXPECT_EQ(events[0]["reason"], "board is moving: 0.14 m");
+  EXPECT_EQ(events[0]["count"], 3);
+  EXPECT_EQ(events[1]["reason"], "pose is not new");
   EXPECT_EQ(events[2]["event"], "accepted");
 }
 

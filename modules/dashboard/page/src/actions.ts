@@ -12,7 +12,7 @@ const WAITING: Record<CommandName, string> = {
   reset: "Taking all samples away",
 };
 const ANSWERS: Record<CommandName, string[]> = {
-  capture: ["accepted", "rejected"],
+  capture: ["accepted"],
   discard: ["discarded", "rejected"],
   finish: ["finished"],
   reset: ["reset"],
@@ -50,7 +50,7 @@ export class Actions {
       window.setTimeout(() => this.showWaiting(WAITING[request.command]), MOMENT_MS),
       window.setTimeout(() => {
         this.stopWaiting();
-        this.say("No answer: is the sample collector running?");
+        this.say("Nothing came of it: are the sensors and the sample collector running?");
       }, GIVE_UP_MS),
     ];
   }
@@ -78,7 +78,9 @@ export class Actions {
     const news = events.filter((event) => event.seq > this.lastSeq);
     this.lastSeq = newest.seq;
     if (isFirst) return;
-    this.say(eventText(newest));
+    // Rejects come by the second: they are news only to who waits for a sample.
+    const told = news.find((event) => event.event !== "rejected" || this.waitingFor !== null);
+    if (told) this.say(eventText(told));
     if (this.waitingFor === null) return;
     const answers = ANSWERS[this.waitingFor];
     if (news.some((event) => answers.includes(event.event))) this.stopWaiting();

@@ -12,7 +12,6 @@ export class ImageView {
   private cloud: CloudFrame | null = null;
   private board: CameraBoard | null = null;
   private guidance: Guidance | null = null;
-  private isDrawing = false;
   private readonly context: CanvasRenderingContext2D;
 
   constructor(
@@ -20,7 +19,7 @@ export class ImageView {
     private readonly hasPoints: HTMLInputElement,
   ) {
     this.context = canvas.getContext("2d")!;
-    hasPoints.addEventListener("change", () => this.draw());
+    hasPoints.addEventListener("change", () => void this.draw());
   }
 
   /** Resolves once the image is on the screen. */
@@ -32,30 +31,23 @@ export class ImageView {
     await this.draw();
   }
 
+  // These show with the next image.
   showCloud(cloud: CloudFrame): void {
     this.cloud = cloud;
-    void this.draw();
   }
 
   showBoard(board: CameraBoard): void {
     this.board = board;
-    void this.draw();
   }
 
   showGuidance(guidance: Guidance): void {
     this.guidance = guidance;
-    void this.draw();
   }
 
   private draw(): Promise<void> {
     return new Promise((resolve) => {
-      const isAsked = this.isDrawing;
-      this.isDrawing = true;
       requestAnimationFrame(() => {
-        if (!isAsked) {
-          this.isDrawing = false;
-          this.drawNow();
-        }
+        this.drawNow();
         resolve();
       });
     });
@@ -67,6 +59,7 @@ export class ImageView {
     if (canvas.width !== bitmap.width) canvas.width = bitmap.width;
     if (canvas.height !== bitmap.height) canvas.height = bitmap.height;
     context.drawImage(bitmap, 0, 0);
+    canvas.dataset.utime = `${frame.utime}`;
     const scale = bitmap.width / frame.width;
     if (this.hasPoints.checked) this.drawPoints(scale);
     this.drawGhost(scale);

@@ -1,7 +1,7 @@
 // The parts of the page that are text: guidance, estimate, samples, rejects, modules.
 
 import { byId, element, number, setText } from "./dom.ts";
-import type { Events, Guidance, Modules, Result, Samples } from "./protocol.ts";
+import type { Check, Events, Guidance, Modules, Result, Sample, Samples } from "./protocol.ts";
 
 export function showGuidance(guidance: Guidance): void {
   const { unit, tolerance, min_range_m, max_range_m, worst_error, predicted_worst_error } = guidance;
@@ -45,15 +45,17 @@ export function showResult(result: Result): void {
     result.predicted!.map((each) => `${number(each.corner_mm, 0, "mm")} at ${each.range_m} m`).join(", "),
   );
   setText("made-from", `${result.num_samples} samples, by ${result.method}${result.is_current ? "" : "; being renewed"}`);
-  byId("checks").replaceChildren(
-    ...verdict.checks.map((check) =>
-      element(
-        "li",
-        { "data-grade": check.grade },
-        element("strong", {}, `${check.name}: ${check.grade}. `),
-        check.text,
-      ),
-    ),
+  const isGood = (check: Check) => check.grade === "good";
+  byId("marked").replaceChildren(...verdict.checks.filter((check) => !isGood(check)).map(checkItem));
+  byId("checks").replaceChildren(...verdict.checks.filter(isGood).map(checkItem));
+}
+
+function checkItem(check: Check): HTMLElement {
+  return element(
+    "li",
+    { "data-grade": check.grade },
+    element("strong", {}, `${check.name}: ${check.grade}. `),
+    check.text,
   );
 }
 
@@ -80,35 +82,45 @@ export function showSamples({ samples, is_finished }: Samples, discard: (id: num
   setText("sample-count", `${samples.length}`);
   setText("finished", is_finished ? "Finished. Capture goes on with it." : "");
   byId("no-samples").hidden = samples.length > 0;
-  const focused = document.activeElement?.closest("[data-sample]")?.getAttribute("data-sample");
-  byId("samples").replaceChildren(
-    ...[...samples].reverse().map((sample) => {
-      const turned = [facing(sample.faces_right_deg, "right", "left"), facing(sample.faces_up_deg, "up", "down")];
-      const button = element(
-        "button",
-        { type: "button", class: "quiet", "aria-label": `Discard sample ${sample.id}` },
-        "Discard",
-      );
-      button.addEventListener("click", () => discard(sample.id));
-      const notes = [...(sample.left_out ? [`left out: ${sample.left_out}`] : []), ...sample.warnings];
-      return element(
-        "li",
-        { "data-sample": `${sample.id}`, class: sample.left_out ? "left-out" : "" },
-        element("b", {}, `${sample.id}`),
-        element(
-          "span",
-          { class: "facts" },
-          element("span", {}, number(sample.distance_m, 2, "m")),
-          element("span", {}, `e_dim ${number(sample.e_dim_mm, 0, "mm")}`),
-          element("span", {}, `faces ${turned.filter(Boolean).join(", ") || "the camera"}`),
-          ...(sample.held_out_mm === undefined ? [] : [element("span", {}, `error ${number(sample.held_out_mm, 1, "mm")}`)]),
-          ...(notes.length > 0 ? [element("span", { class: "reason" }, notes.join("; "))] : []),
-        ),
-        button,
-      );
-    }),
+  const list = byId("samples");
+  const known = new Map([...list.children].map((item) => [(item as HTMLElement).dataset.sample, item as HTMLElement]));
+  for (const sample of samples) {
+    const item = known.get(`${sample.id}`) ?? sampleItem(sample.id, discard);
+    known.delete(`${sample.id}`);
+    if (!item.parentElement) list.prepend(item);
+    item.className = sample.left_out ? "left-out" : "";
+    const facts = factsOf(sample);
+    const shown = item.querySelector<HTMLElement>(".facts")!;
+    if (shown.dataset.facts === facts.join()) continue;
+    shown.dataset.facts = facts.join();
+    shown.replaceChildren(...facts.map((fact) => element("span", {}, fact)));
+  }
+  for (const gone of known.values()) gone.remove();
+}
+
+/** Stays the same as long as the sample does: a button must not vanish under a finger. */
+function sampleItem(id: number, discard: (id: number) => void): HTMLElement {
+  const button = element("button", { type: "button", class: "quiet", "aria-label": `Discard sample ${id}` }, "Discard");
+  button.addEventListener("click", () => discard(id));
+  return element(
+    "li",
+    { "data-sample": `${id}` },
+    element("b", {}, `${id}`),
+    element("span", { class: "facts" }),
+    button,
   );
-  if (focused) byId("samples").querySelector<HTMLElement>(`[data-sample="${focused}"] button`)?.focus();
+}
+
+function factsOf(sample: Sample): string[] {
+  const turned = [facing(sample.faces_right_deg, "right", "left"), facing(sample.faces_up_deg, "up", "down")];
+  return [
+    number(sample.distance_m, 2, "m"),
+    `e_dim ${number(sample.e_dim_mm, 0, "mm")}`,
+    `faces ${turned.filter(Boolean).join(", ") || "the camera"}`,
+    ...(sample.held_out_mm === undefined ? [] : [`error ${number(sample.held_out_mm, 1, "mm")}`]),
+    ...(sample.left_out ? [`left out: ${sample.left_out}`] : []),
+    ...sample.warnings,
+  ];
 }
 
 export function eventText(event: Events["events"][number]): string {

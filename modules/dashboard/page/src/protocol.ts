@@ -32,6 +32,12 @@ export interface Samples {
 
 export type Grade = "good" | "look" | "bad";
 
+export interface Check {
+  name: string;
+  grade: Grade;
+  text: string;
+}
+
 export interface Spread {
   mean: number | null;
   std: number | null;
@@ -51,7 +57,7 @@ export interface Result {
   sigma_mm?: (number | null)[];
   held_out?: { centre_px: Spread; centre_mm: Spread };
   predicted?: { range_m: number; corner_mm: number | null }[];
-  verdict?: { grade: Grade; headline: string; checks: { name: string; grade: Grade; text: string }[] };
+  verdict?: { grade: Grade; headline: string; checks: Check[] };
   exports?: string[];
 }
 

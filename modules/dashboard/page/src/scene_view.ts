@@ -6,6 +6,8 @@ import { rangeHue, themeColour } from "./colours.ts";
 import type { CloudFrame, Guidance, LidarBoard, Point3, Samples } from "./protocol.ts";
 
 const UP = new THREE.Vector3(0, 0, 1);
+/** What moves by itself is drawn no more often: phones have batteries. */
+const MIN_PERIOD_MS = 150;
 
 export class SceneView {
   private readonly scene = new THREE.Scene();
@@ -20,6 +22,7 @@ export class SceneView {
   private readonly samples = new THREE.Group();
   private readonly ghost = new THREE.Group();
   private isAsked = false;
+  private drawnAt = 0;
 
   constructor(private readonly holder: HTMLElement) {
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
@@ -36,7 +39,7 @@ export class SceneView {
     this.camera.up.copy(UP);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.listenToKeyEvents(this.renderer.domElement);
-    this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("change", () => this.draw(0));
     this.lookAlong();
     new ResizeObserver(() => this.resize()).observe(holder);
   }
@@ -46,7 +49,7 @@ export class SceneView {
     this.camera.position.set(-3.5, 1.2, 2.4);
     this.controls.target.set(2.5, 0, 0);
     this.controls.update();
-    this.draw();
+    this.draw(0);
   }
 
   showCloud(cloud: CloudFrame): void {
@@ -62,6 +65,7 @@ export class SceneView {
     geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
     this.points.geometry.dispose();
     this.points.geometry = geometry;
+    this.holder.dataset.utime = `${cloud.utime}`;
     this.draw();
   }
 
@@ -103,13 +107,17 @@ export class SceneView {
     this.draw();
   }
 
-  private draw(): void {
+  private draw(minPeriodMs = MIN_PERIOD_MS): void {
     if (this.isAsked) return;
     this.isAsked = true;
-    requestAnimationFrame(() => {
-      this.isAsked = false;
-      this.renderer.render(this.scene, this.camera);
-    });
+    const wait = Math.max(0, this.drawnAt + minPeriodMs - performance.now());
+    setTimeout(() => requestAnimationFrame(() => this.drawNow()), wait);
+  }
+
+  private drawNow(): void {
+    this.isAsked = false;
+    this.drawnAt = performance.now();
+    this.renderer.render(this.scene, this.camera);
   }
 }
 

@@ -1,0 +1,53 @@
+// A browser as people have one, for the scripts beside this file. Ends with 77 where there is no Chromium.
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+const require = createRequire(new URL("../../tools/node/package.json", import.meta.url));
+const { chromium } = require("playwright-core");
+
+export const SIZES = { desktop: { width: 1280, height: 900 }, phone: { width: 390, height: 844 } };
+
+function chromiumPath() {
+  try {
+    return execFileSync("sh", ["-c", "command -v chromium"]).toString().trim();
+  } catch {
+    process.stdout.write("skipped: no chromium (tools/setup installs it)\n");
+    process.exit(77);
+  }
+}
+
+/**
+ * Waits until `condition`, which runs in the page with `argument`, holds. (Playwright's own way needs eval, which
+ * the dashboard forbids its page.) Who waits for ever is ended by ctest.
+ */
+export async function until(page, condition, argument) {
+  while (!(await page.evaluate(condition, argument))) await page.waitForTimeout(100);
+}
+
+/** A browser context with a profile of its own, and how to close it; flags: what Chromium is told besides. */
+export async function openBrowser(flags = []) {
+  const profile = mkdtempSync(join(tmpdir(), "voqcal-chromium-"));
+  const context = await chromium.launchPersistentContext(profile, {
+    executablePath: chromiumPath(),
+    headless: true,
+    timeout: 120_000,
+    args: [
+      "--no-sandbox",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+      "--no-first-run",
+      ...flags,
+    ],
+  });
+  context.setDefaultTimeout(120_000);
+  // Chromium's children may still write for a moment.
+  const close = async () => {
+    await context.close();
+    rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
+  };
+  return { context, close };
+}

@@ -1,0 +1,153 @@
+// dashboard_session.mjs SESSION [FOLDER]: a live session in a browser, from its first samples to the export, by
+// clicks and keys alone; the server is killed in between. Ends with 1 and a line for each thing that is wrong.
+// With FOLDER it leaves screenshots there. 77: no Chromium here.
+import { execFileSync } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { SIZES, openBrowser, until as untilInPage } from "./browser.mjs";
+
+const [session, folder] = process.argv.slice(2);
+const problems = [];
+const demand = (isMet, problem) => {
+  if (!isMet) problems.push(problem);
+};
+const say = (text) => process.stdout.write(`${text}\n`);
+
+const { context, close } = await openBrowser();
+const page = await context.newPage();
+let isServerDown = false;
+page.on("console", (message) => {
+  // Chromium reports each connection that fails; while there is no server they must.
+  if (message.type() === "error" && !isServerDown) problems.push(`console: ${message.text()}`);
+});
+page.on("pageerror", (error) => problems.push(error.message));
+const url = readFileSync(join(session, "dashboard_url.txt"), "utf8").trim();
+page.on("request", (request) => {
+  const asked = request.url();
+  if (!asked.startsWith(url) && !/^(blob|data):/.test(asked)) problems.push(`asks for ${asked}`);
+});
+
+const text = (id) => page.locator(`#${id}`).innerText();
+const numSamples = () => page.locator("#samples > li").count();
+const until = (condition, argument) => untilInPage(page, condition, argument);
+const untilSamples = (least) =>
+  until((least) => document.querySelectorAll("#samples > li").length >= least, least);
+const untilState = (isLive) =>
+  until((isLive) => (document.getElementById("connection").dataset.state === "live") === isLive, isLive);
+const untilAnswered = () => until(() => document.getElementById("waiting").hidden);
+
+/** Runs in the page: what is wrong with it for a hand, a keyboard or a screen reader. */
+function inspect() {
+  const found = [];
+  const root = document.documentElement;
+  if (root.scrollWidth > root.clientWidth) found.push(`the page is ${root.scrollWidth} px wide`);
+  const isShown = (element) => element.checkVisibility();
+  for (const button of [...document.querySelectorAll("button")].filter(isShown)) {
+    const name = button.getAttribute("aria-label") ?? button.textContent;
+    if (!name.trim()) found.push("a button has no name");
+    const { height, width } = button.getBoundingClientRect();
+    if (height < 32 || width < 32) found.push(`button ${name} is ${width} x ${height} px`);
+  }
+  const { bottom, top } = document.getElementById("capture").getBoundingClientRect();
+  if (top < 0 || bottom > innerHeight) found.push("the capture button is not in sight");
+  for (const picture of document.querySelectorAll("canvas, [role=img]")) {
+    const hasName = picture.hasAttribute("aria-label") || picture.hasAttribute("aria-labelledby");
+    if (!hasName && !picture.closest("[role=img][aria-label]")) found.push("a picture has no name");
+  }
+  if (/NaN|undefined|null/.test(document.body.innerText)) found.push("the text has NaN, undefined or null");
+  return found;
+}
+
+async function look(name) {
+  await page.setViewportSize(SIZES[name]);
+  for (const problem of await page.evaluate(inspect)) problems.push(`${name}: ${problem}`);
+  if (folder) await page.screenshot({ path: join(folder, `dashboard_${name}.png`), timeout: 120_000 });
+}
+
+async function seeTheSensors() {
+  await untilState(true);
+  await untilSamples(6);
+  await until(() => document.getElementById("image").dataset.utime);
+  await until(() => document.getElementById("scene").dataset.utime);
+  await until(() => document.getElementById("camera-state").textContent.startsWith("board found"));
+}
+
+async function discardOne() {
+  const oldest = page.locator("#samples > li").last();
+  const id = await oldest.getAttribute("data-sample");
+  await oldest.getByRole("button", { name: `Discard sample ${id}` }).click();
+  await until((id) => !document.querySelector(`[data-sample="${id}"]`), id);
+  say(`discarded sample ${id}`);
+}
+
+async function captureByKey() {
+  await page.locator("body").press("c");
+  await untilAnswered();
+  demand(/^Sample \d+ taken/.test(await text("said")), `capture was answered "${await text("said")}"`);
+}
+
+async function surviveTheServer() {
+  const before = await numSamples();
+  isServerDown = true;
+  execFileSync("supervisorctl", ["-c", join(session, "supervisor.conf"), "signal", "KILL", "dashboard"]);
+  await untilState(false);
+  await untilState(true);
+  isServerDown = false;
+  await untilSamples(before);
+  say("found the server again");
+}
+
+async function finish() {
+  await page.getByRole("button", { name: "Finish" }).click();
+  await until(() => document.getElementById("finished").textContent !== "");
+  await until(() => document.getElementById("verdict").dataset.grade !== "none");
+  await until(() => document.getElementById("progress").hidden);
+  await untilAnswered();
+  say(`verdict: ${await text("verdict")}`);
+}
+
+async function download(name) {
+  const [file] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("link", { name, exact: true }).click(),
+  ]);
+  return readFileSync(await file.path(), "utf8");
+}
+
+async function exportAll() {
+  await page.getByRole("button", { name: "Export" }).click();
+  const names = await page.locator("#exports a").allInnerTexts();
+  demand(names.length >= 8, `only these can be exported: ${names}`);
+  for (const name of names) {
+    const bytes = await download(name);
+    demand(bytes.length > 100, `${name} has ${bytes.length} bytes`);
+    if (name !== "extrinsic.yaml") continue;
+    demand(bytes === readFileSync(join(session, name), "utf8"), `${name} is not the session's`);
+  }
+  await page.getByRole("button", { name: "Close" }).click();
+  say(`exported ${names.length} files`);
+}
+
+async function reset() {
+  await page.getByRole("button", { name: "Reset" }).click();
+  await page.getByRole("button", { name: "Keep them" }).click();
+  demand((await numSamples()) > 0, "samples were taken away although they were to be kept");
+  await page.getByRole("button", { name: "Reset" }).click();
+  await page.locator("#confirm-reset").getByRole("button", { name: "Reset" }).click();
+  await until(() => /taken away/.test(document.getElementById("said").textContent));
+}
+
+await page.setViewportSize(SIZES.phone);
+await page.goto(url);
+await seeTheSensors();
+await look("phone");
+await discardOne();
+await captureByKey();
+await surviveTheServer();
+await finish();
+await look("desktop");
+await exportAll();
+await reset();
+await close();
+for (const problem of problems) say(problem);
+process.exitCode = problems.length === 0 ? 0 : 1;

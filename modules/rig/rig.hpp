@@ -17,6 +17,7 @@
 #include "core/estimation/consistency.hpp"
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/lidar/packet_stream.hpp"
+#include "core/guidance/next_pose.hpp"
 #include "core/selection/select_sets.hpp"
 #include "core/simulation/simulation.hpp"
 #include "rig/dashboard_options.hpp"
@@ -117,6 +118,7 @@ struct Rig {
   SceneCheckOptions scene_check;  ///< Under assessor.
   DiagnosisOptions diagnosis;     ///< Under assessor.
   DashboardOptions dashboard;
+  GuidanceOptions pose_guide;
 };
 
 /// Reads and checks a rig file (YAML). Options that are not given keep their defaults; board and

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "rig/driver_sections.hpp"
+#include "rig/pose_guide_section.hpp"
 #include "rig/transform_yaml.hpp"
 
 namespace voqcal {
@@ -337,6 +338,8 @@ void ReadRigSections(YamlDocument* document, Rig* rig) {
   ReadExtrinsicRefiner(&top, &rig->extrinsic_refiner);
   ReadAssessor(&top, &rig->scene_check, &rig->diagnosis);
   ReadDashboard(&top, &rig->dashboard);
+  ReadPoseGuide(&top, &rig->pose_guide);
+  rig->pose_guide.sensors.detector = rig->lidar_board_detector;
   top.RefuseUnknownKeys();
 }
 

@@ -112,6 +112,7 @@ TEST_F(BadInput, EveryModuleRefusesAWrongRigFile) {
                              "extrinsic_estimator",
                              "extrinsic_refiner",
                              "assessor",
+                             "pose_guide",
                              "dashboard"}) {
     ExpectRefused({test::Program(module), "--rig", rig_, "--session", Path("session")},
                   AllOf(HasSubstr(rig_), HasSubstr("colour")));

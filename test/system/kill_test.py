@@ -19,7 +19,8 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODULES = ["lidar_driver", "camera_driver", "lidar_board_detector", "camera_board_detector",
-           "sample_collector", "voq_selector", "extrinsic_estimator", "extrinsic_refiner", "assessor"]
+           "sample_collector", "voq_selector", "extrinsic_estimator", "extrinsic_refiner", "assessor",
+           "pose_guide"]
 
 
 def log_events(path):

@@ -35,6 +35,7 @@ const std::vector<std::string> kModules = {"lidar_driver",
                                            "extrinsic_estimator",
                                            "extrinsic_refiner",
                                            "assessor",
+                                           "pose_guide",
                                            "dashboard"};
 const std::vector<std::string> kTools = {"calibrate",
                                          "check_rig",

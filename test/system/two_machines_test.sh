@@ -39,7 +39,7 @@ sed 's/num_poses: 40/num_poses: 6/' "$root/config/rigs/simulated_vlp16.yaml" >"$
 sed 's/ttl=0/ttl=1/' "$folder/stays.yaml" >"$folder/rig.yaml"
 sensors=lidar_driver,camera_driver
 rest=lidar_board_detector,camera_board_detector,sample_collector,voq_selector
-rest+=,extrinsic_estimator,extrinsic_refiner,assessor
+rest+=,extrinsic_estimator,extrinsic_refiner,assessor,pose_guide
 
 echo "== ttl=0: the sensors' host is not heard =="
 on_sensors "$root/tools/up" "$folder/stays.yaml" --session "$folder/sensors" --only $sensors

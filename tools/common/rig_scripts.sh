@@ -8,7 +8,7 @@ bin=${VOQCAL_BIN:-$root/bin}
 drivers=(lidar_driver camera_driver)
 # In the order of the flow; every one of them reads what a driver, or one before it, says.
 readers=(lidar_board_detector camera_board_detector sample_collector voq_selector
-  extrinsic_estimator extrinsic_refiner assessor dashboard)
+  extrinsic_estimator extrinsic_refiner assessor pose_guide dashboard)
 
 fail() {  # MESSAGE [STATUS]
   echo "$(basename "$0"): $1" >&2

@@ -82,6 +82,7 @@ std::vector<std::string> AllModuleNames() {
           "extrinsic_estimator",
           "extrinsic_refiner",
           "assessor",
+          "pose_guide",
           "dashboard"};
 }
 

@@ -22,18 +22,25 @@ PointError ErrorAt(const Eigen::Vector3d& point_camera_m,
                    const Eigen::Isometry3d& T_camera_lidar,
                    const Matrix6d& covariance,
                    const CameraModel& camera) {
-  Matrix36d J;
-  J << -Skew(point_camera_m - T_camera_lidar.translation()), Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d covariance_m2 = J * covariance * J.transpose();
-  const Eigen::Vector3d ray = point_camera_m.normalized();
-  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray * ray.transpose();
-  Matrix23d J_px;
-  ProjectWithJacobian(camera, point_camera_m, &J_px);
-  return {std::sqrt((J_px * covariance_m2 * J_px.transpose()).trace()),
-          kMillimetresPerMetre * std::sqrt((across * covariance_m2 * across).trace())};
+  const PointErrorForms forms = ErrorFormsAt(point_camera_m, T_camera_lidar, camera);
+  return {std::sqrt((forms.px2 * covariance).trace()),
+          kMillimetresPerMetre * std::sqrt((forms.m2 * covariance).trace())};
 }
 
 }  // namespace
+
+PointErrorForms ErrorFormsAt(const Eigen::Vector3d& point_camera_m,
+                             const Eigen::Isometry3d& T_camera_lidar,
+                             const CameraModel& camera) {
+  Matrix36d J;
+  J << -Skew(point_camera_m - T_camera_lidar.translation()), Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d ray = point_camera_m.normalized();
+  const Matrix36d J_across = J - ray * (ray.transpose() * J);
+  Matrix23d J_px_point;
+  ProjectWithJacobian(camera, point_camera_m, &J_px_point);
+  const Eigen::Matrix<double, 2, 6> J_px = J_px_point * J;
+  return {J_px.transpose() * J_px, J_across.transpose() * J_across};
+}
 
 std::vector<PredictedError> PredictErrors(const Eigen::Isometry3d& T_camera_lidar,
                                           const Matrix6d& covariance,

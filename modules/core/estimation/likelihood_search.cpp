@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "core/estimation/consider_covariance.hpp"
 #include "core/estimation/likelihood_noise.hpp"
 
 namespace voqcal {
@@ -20,16 +21,16 @@ std::size_t NumRings(const std::vector<LikelihoodPose>& poses) {
   return num_rings;
 }
 
-Eigen::VectorXd PriorSigmasM(const LikelihoodOptions& options, Eigen::Index num_faults) {
+}  // namespace
+
+Eigen::VectorXd FaultPriorInformation(const LikelihoodOptions& options, Eigen::Index num_faults) {
   Eigen::VectorXd sigmas_m = Eigen::VectorXd::Constant(num_faults, options.ring_prior_m);
   sigmas_m[kCommon] = options.common_prior_m;
   sigmas_m[kDarkStep] = options.dark_step_prior_m;
   sigmas_m[kLift] = options.outline_lift_prior_m;
   sigmas_m[kRise] = options.outline_rise_prior;
-  return sigmas_m;
+  return sigmas_m.cwiseAbs2().cwiseInverse();
 }
-
-}  // namespace
 
 LikelihoodSearch::LikelihoodSearch(std::vector<LikelihoodPose> poses,
                                    const Eigen::Isometry3d& T_camera_lidar_start,
@@ -39,7 +40,7 @@ LikelihoodSearch::LikelihoodSearch(std::vector<LikelihoodPose> poses,
   state_.T_camera_lidar = T_camera_lidar_start;
   state_.faults_m = Eigen::VectorXd::Zero(num_faults);
   for (const LikelihoodPose& pose : poses_) state_.T_camera_board.push_back(pose.T_camera_board);
-  prior_information_ = PriorSigmasM(options, num_faults).cwiseAbs2().cwiseInverse();
+  prior_information_ = FaultPriorInformation(options, num_faults);
   is_free_.assign(static_cast<std::size_t>(num_faults), true);
 }
 
@@ -114,34 +115,11 @@ SharedEquations LikelihoodSearch::Equations() const {
 }
 
 Eigen::MatrixXd LikelihoodSearch::Gain(const Eigen::MatrixXd& information) const {
-  Eigen::MatrixXd of_free = information;
-  for (Eigen::Index i = 0; i < state_.faults_m.size(); ++i) {
-    if (IsFree(i)) continue;
-    const Eigen::Index held = kExtrinsicSize + i;
-    of_free.row(held).setZero();
-    of_free.col(held).setZero();
-    of_free(held, held) = 1.0;
-  }
-  Eigen::MatrixXd gain =
-      of_free.ldlt().solve(Eigen::MatrixXd::Identity(of_free.rows(), of_free.cols()));
-  for (Eigen::Index i = 0; i < state_.faults_m.size(); ++i) {
-    if (!IsFree(i)) gain(kExtrinsicSize + i, kExtrinsicSize + i) = 0.0;
-  }
-  return gain;
+  return GainWithHeld(information, is_free_);
 }
 
 Eigen::MatrixXd LikelihoodSearch::Covariance(const SharedEquations& equations) const {
-  const Eigen::MatrixXd gain = Gain(equations.information);
-  Eigen::MatrixXd covariance = gain;
-  for (Eigen::Index i = 0; i < state_.faults_m.size(); ++i) {
-    if (IsFree(i)) continue;
-    const Eigen::Index held = kExtrinsicSize + i;
-    const double variance_m2 = 1.0 / prior_information_[i];
-    const Eigen::VectorXd shift = gain * equations.information.col(held);
-    covariance += variance_m2 * shift * shift.transpose();
-    covariance(held, held) = variance_m2;
-  }
-  return covariance;
+  return ConsiderCovariance(equations.information, prior_information_, is_free_);
 }
 
 double LikelihoodSearch::Step() {

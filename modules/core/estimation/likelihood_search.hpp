@@ -9,6 +9,9 @@
 
 namespace voqcal {
 
+/// Of each fault, before the data speak.
+Eigen::VectorXd FaultPriorInformation(const LikelihoodOptions& options, Eigen::Index num_faults);
+
 /// A maximum-likelihood search: data, what is believed of the noise, and where it stands.
 class LikelihoodSearch {
  public:
@@ -31,14 +34,8 @@ class LikelihoodSearch {
   /// Faults whose prior the data narrow to no less than half are held at zero from now on.
   void HoldUnobservable(const Eigen::MatrixXd& covariance_all_free);
 
-  /// Where the search stands, by how much the shared unknowns move for a pull on them: the inverse
-  /// information, with no answer of held faults.
+  /// Where the search stands, with its held faults: GainWithHeld and ConsiderCovariance.
   Eigen::MatrixXd Gain(const Eigen::MatrixXd& information) const;
-
-  /// Of the shared unknowns. Held faults are off by their priors, and shift the others:
-  ///     G + K S K',  K = G A,  S: the variances of the held faults' priors
-  /// with G the gain and A the information; the "consider covariance" of Schmidt 1966, "Application
-  /// of state-space methods to navigation problems", Advances in Control Systems 3.
   Eigen::MatrixXd Covariance(const SharedEquations& equations) const;
 
   /// Where the search stands, all faults free, priors included.

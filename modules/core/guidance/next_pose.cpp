@@ -1,0 +1,238 @@
+#include "core/guidance/next_pose.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "core/geometry/rigid.hpp"
+#include "core/guidance/advice.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr double kRadPerDeg = M_PI / 180.0;
+// Nearer in both is the same view again, with the same errors of lens and board.
+constexpr double kNewDistanceM = 0.3;
+constexpr double kNewAngleRad = 15.0 * kRadPerDeg;
+
+void RequireUsable(const GuidanceOptions& options) {
+  const std::vector<std::string> problems = options.Problems();
+  if (!problems.empty()) throw std::invalid_argument("GuidanceOptions: " + problems.front());
+}
+
+// Both look ahead, upright: lidar x is camera z, lidar z is camera -y.
+Eigen::Isometry3d LookingAlike() {
+  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
+  T_camera_lidar.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return T_camera_lidar;
+}
+
+// Of the board's two half-turns, the one that leaves neither sensor upside down against the other.
+Eigen::Isometry3d ExtrinsicOf(const BoardSample& sample) {
+  const auto extrinsic = [&](const BoardPose& pose_lidar) {
+    return TransformFromPose(sample.camera.pose) * TransformFromPose(pose_lidar).inverse();
+  };
+  const Eigen::Isometry3d T_camera_lidar = extrinsic(sample.lidar.pose);
+  const double up = -T_camera_lidar.linear()(1, 2);  // lidar z along camera -y
+  return up >= 0.0 ? T_camera_lidar : extrinsic(TurnedByHalf(sample.lidar.pose));
+}
+
+ExtrinsicBelief BeliefOf(const GuidanceState& state) {
+  if (state.belief) return *state.belief;
+  ExtrinsicBelief belief;
+  belief.T_camera_lidar =
+      state.samples.empty() ? LookingAlike() : ExtrinsicOf(*state.samples.back());
+  return belief;
+}
+
+int NumRings(const std::vector<const BoardSample*>& samples, const SensorExpectation& sensors) {
+  std::size_t num_rings = static_cast<std::size_t>(sensors.num_rows);
+  for (const BoardSample* sample : samples) {
+    for (const LidarPoint& point : sample->lidar.points_lidar_m.points) {
+      if (point.ring < kMaxRings) num_rings = std::max(num_rings, std::size_t{point.ring} + 1);
+    }
+  }
+  return static_cast<int>(num_rings);
+}
+
+// How many times larger than the samples' information allows each parameter's 1 sigma is.
+Vector6d Widening(const std::optional<Matrix6d>& published, const Matrix6d& least) {
+  if (!published) return Vector6d::Ones();
+  return (published->diagonal().cwiseQuotient(least.diagonal())).cwiseSqrt().cwiseMax(1.0);
+}
+
+struct Candidate {
+  Placement placement;
+  Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();
+  double worst_error = std::numeric_limits<double>::infinity();
+};
+
+/// Judges placements and searches the best of them.
+class PoseSearch {
+ public:
+  PoseSearch(const GuidanceState& state,
+             const ExtrinsicBelief& belief,
+             const GuidedRig& rig,
+             const GuidanceOptions& options)
+      : rig_(rig),
+        options_(options),
+        T_camera_lidar_(belief.T_camera_lidar),
+        scene_(rig.camera, belief.T_camera_lidar, options.tolerance),
+        information_(
+            state.samples, belief, rig.likelihood, NumRings(state.samples, options.sensors)),
+        least_covariance_(information_.Covariance()),
+        widening_(Widening(state.covariance, least_covariance_)) {
+    for (const BoardSample* sample : state.samples) {
+      known_T_camera_board_.push_back(TransformFromPose(sample->camera.pose));
+    }
+  }
+
+  Eigen::Vector3d Up() const { return T_camera_lidar_.linear().col(2); }
+  WorstError WorstNow() const { return scene_.Worst(Widened(least_covariance_)); }
+
+  // Its error is infinite if nothing is in both sensors' view.
+  Candidate Best() const {
+    constexpr std::size_t kNumStarts = 4;
+    std::vector<Candidate> starts = Grid();
+    const std::size_t num_starts = std::min(kNumStarts, starts.size());
+    std::partial_sort(starts.begin(),
+                      starts.begin() + static_cast<std::ptrdiff_t>(num_starts),
+                      starts.end(),
+                      IsBetter);
+    Candidate best;
+    for (std::size_t i = 0; i < num_starts; ++i) best = std::min(best, Climb(starts[i]), IsBetter);
+    return best;
+  }
+
+ private:
+  static bool IsBetter(const Candidate& a, const Candidate& b) {
+    return a.worst_error < b.worst_error;
+  }
+
+  Matrix6d Widened(const Matrix6d& covariance) const {
+    return widening_.asDiagonal() * covariance * widening_.asDiagonal();
+  }
+
+  bool IsNew(const Eigen::Isometry3d& T_camera_board) const {
+    return std::none_of(
+        known_T_camera_board_.begin(), known_T_camera_board_.end(), [&](const auto& known) {
+          return (known.translation() - T_camera_board.translation()).norm() < kNewDistanceM &&
+                 AngleBetween(known.linear().col(2), T_camera_board.linear().col(2)) < kNewAngleRad;
+        });
+  }
+
+  Candidate Judge(const Placement& placement) const {
+    Candidate candidate;
+    candidate.placement = placement;
+    const auto pose = PoseOf(placement, rig_.camera, Up());
+    if (!pose) return candidate;
+    candidate.T_camera_board = *pose;
+    if (!IsInView(
+            *pose, T_camera_lidar_, rig_.board, rig_.camera, options_.sensors, options_.limits) ||
+        !IsNew(*pose)) {
+      return candidate;
+    }
+    const BoardSample sample =
+        ExpectedSample(*pose, T_camera_lidar_, rig_.board, rig_.camera, options_.sensors);
+    if (sample.lidar.num_beams < options_.limits.min_rows) return candidate;
+    candidate.worst_error = scene_.Worst(Widened(information_.CovarianceWith(sample))).error;
+    return candidate;
+  }
+
+  // Facing the camera; tilts are left to Climb.
+  std::vector<Candidate> Grid() const {
+    constexpr std::array<double, 5> kColumns = {0.15, 0.325, 0.5, 0.675, 0.85};
+    constexpr std::array<double, 5> kRows = {0.3, 0.4, 0.5, 0.6, 0.7};
+    constexpr std::array<double, 5> kDistances = {0.1, 0.3, 0.5, 0.7, 0.9};
+    const double extent_m = options_.limits.max_distance_m - options_.limits.min_distance_m;
+    std::vector<Candidate> candidates;
+    for (const double column : kColumns) {
+      for (const double row : kRows) {
+        for (const double distance : kDistances) {
+          Placement placement;
+          placement.centre_px = {column * (rig_.camera.width_px - 1),
+                                 row * (rig_.camera.height_px - 1)};
+          placement.distance_m = options_.limits.min_distance_m + distance * extent_m;
+          candidates.push_back(Judge(placement));
+        }
+      }
+    }
+    return candidates;
+  }
+
+  // Steps along each of the five numbers, both ways, as long as one of them is better; then halves.
+  Candidate Climb(Candidate best) const {
+    constexpr int kNumHalvings = 3;
+    Placement step;
+    step.centre_px = {0.1 * rig_.camera.width_px, 0.1 * rig_.camera.height_px};
+    step.distance_m = 0.12 * (options_.limits.max_distance_m - options_.limits.min_distance_m);
+    step.yaw_rad = step.pitch_rad = 15.0 * kRadPerDeg;
+    for (int i = 0; i < kNumHalvings; ++i) {
+      for (const double sign : {1.0, -1.0}) {
+        const double share = sign / (1 << i);
+        const auto attempt = [&](auto change) {
+          Placement placement = best.placement;
+          change(&placement);
+          best = std::min(best, Judge(placement), IsBetter);
+        };
+        attempt([&](Placement* p) { p->centre_px.x() += share * step.centre_px.x(); });
+        attempt([&](Placement* p) { p->centre_px.y() += share * step.centre_px.y(); });
+        attempt([&](Placement* p) { p->distance_m += share * step.distance_m; });
+        attempt([&](Placement* p) { p->yaw_rad += share * step.yaw_rad; });
+        attempt([&](Placement* p) { p->pitch_rad += share * step.pitch_rad; });
+      }
+    }
+    return best;
+  }
+
+  const GuidedRig& rig_;
+  const GuidanceOptions& options_;
+  Eigen::Isometry3d T_camera_lidar_;
+  ErrorScene scene_;
+  ExtrinsicInformation information_;
+  Matrix6d least_covariance_;
+  Vector6d widening_;
+  std::vector<Eigen::Isometry3d> known_T_camera_board_;
+};
+
+}  // namespace
+
+std::vector<std::string> GuidanceOptions::Problems() const {
+  std::vector<std::string> problems = tolerance.Problems();
+  for (const auto& more : {sensors.Problems(), limits.Problems()}) {
+    problems.insert(problems.end(), more.begin(), more.end());
+  }
+  return problems;
+}
+
+NextPose ProposeNextPose(const GuidanceState& state,
+                         const GuidedRig& rig,
+                         const GuidanceOptions& options) {
+  RequireUsable(options);
+  const ExtrinsicBelief belief = BeliefOf(state);
+  const PoseSearch search(state, belief, rig, options);
+  NextPose next;
+  next.worst = search.WorstNow();
+  if (state.samples.empty()) next.worst.error = std::numeric_limits<double>::infinity();
+  next.is_enough = state.covariance && next.worst.error <= options.tolerance.tolerance;
+  const Candidate best = search.Best();
+  if (!std::isfinite(best.worst_error)) {
+    next.problem = "nowhere within the limits is the whole board in the view of camera and lidar";
+    return next;
+  }
+  next.predicted_worst_error = best.worst_error;
+  next.T_camera_board = best.T_camera_board;
+  if (state.belief || !state.samples.empty()) {
+    next.T_lidar_board = belief.T_camera_lidar.inverse() * best.T_camera_board;
+  }
+  std::optional<Eigen::Vector3d> last_centre_camera_m;
+  if (!state.samples.empty()) last_centre_camera_m = state.samples.back()->camera.pose.centre_m;
+  next.advice = next.is_enough
+                    ? EnoughWords(next.worst, options.tolerance)
+                    : HoldWords(next.T_camera_board, last_centre_camera_m, rig.camera, search.Up());
+  return next;
+}
+
+}  // namespace voqcal

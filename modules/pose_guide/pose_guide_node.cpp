@@ -1,0 +1,76 @@
+#include "pose_guide/pose_guide_node.hpp"
+
+#include <vector>
+
+#include "messaging/convert_board.hpp"
+#include "messaging/convert_guidance.hpp"
+#include "messaging/convert_result.hpp"
+#include "messaging/made_from.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr std::int32_t kLeastForAnExtrinsic = 3;  // samples
+
+}  // namespace
+
+PoseGuideNode::PoseGuideNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
+  bus_.Subscribe<samples_t>(
+      rig_.channels.calib_samples, Queue::kState, [this](const samples_t& m) { samples_ = m; });
+  bus_.Subscribe<extrinsic_averaged_t>(rig_.channels.extrinsic_averaged,
+                                       Queue::kState,
+                                       [this](const extrinsic_averaged_t& m) { averaged_ = m; });
+  bus_.Subscribe<extrinsic_refined_t>(rig_.channels.extrinsic_refined,
+                                      Queue::kState,
+                                      [this](const extrinsic_refined_t& m) { refined_ = m; });
+}
+
+std::string PoseGuideNode::State() const {
+  if (!next_) return "waiting for samples and extrinsics";
+  return next_->problem.empty() ? "running" : "waiting: " + next_->problem;
+}
+
+bool PoseGuideNode::Step() {
+  if (!samples_ || (next_ && IsMadeFrom(*samples_, *next_))) return false;
+  if (samples_->num_samples >= kLeastForAnExtrinsic && !HasExtrinsics()) return false;
+  next_ = Propose();
+  Count(next_->problem.empty() ? "proposals" : "without a pose");
+  Republish();
+  return false;
+}
+
+void PoseGuideNode::Republish() {
+  if (next_) bus_.Publish(rig_.channels.next_pose, *next_);
+}
+
+// Without a refiner, the average is all there will be.
+bool PoseGuideNode::HasExtrinsics() const {
+  return averaged_ && IsMadeFrom(*samples_, *averaged_) &&
+         (!refined_ || IsMadeFrom(*samples_, *refined_));
+}
+
+next_pose_t PoseGuideNode::Propose() const {
+  std::vector<BoardSample> all = FromMessage(*samples_);
+  GuidanceState state;
+  if (samples_->num_samples >= kLeastForAnExtrinsic) {
+    TakeChosen(averaged_->chosen, &all);
+    state.samples = SamplesWithout(all, averaged_->inconsistent_ids);
+    if (refined_ && refined_->problem.empty()) {
+      const BestExtrinsic best = FromMessage(*refined_);
+      state.belief = {best.T_camera_lidar, best.Bias(), best.likelihood.noise};
+      // Of few samples the residuals may tell none.
+      if (best.covariance.allFinite()) state.covariance = best.covariance;
+    } else if (averaged_->problem.empty()) {
+      state.belief = {FromMessage(averaged_->T_camera_lidar), {}, {}};
+    }
+  } else {
+    state.samples = SamplesWithout(all, {});
+  }
+  const NextPose next = ProposeNextPose(
+      state, {rig_.board, rig_.camera, rig_.extrinsic_refiner.likelihood}, rig_.pose_guide);
+  next_pose_t message = ToMessage(next, rig_.pose_guide.tolerance, rig_.board, rig_.camera);
+  StampMadeFrom(*samples_, &message);
+  return message;
+}
+
+}  // namespace voqcal

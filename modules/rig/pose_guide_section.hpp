@@ -1,0 +1,11 @@
+#pragma once
+
+#include "core/guidance/next_pose.hpp"
+#include "rig/yaml_reader.hpp"
+
+namespace voqcal {
+
+/// Reads `pose_guide`, if it is there: options not given keep their values.
+void ReadPoseGuide(YamlSection* top, GuidanceOptions* options);
+
+}  // namespace voqcal

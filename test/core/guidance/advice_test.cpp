@@ -1,0 +1,86 @@
+#include "core/guidance/advice.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/guidance/placement.hpp"
+#include "support/synthetic_samples.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr double kRadPerDeg = M_PI / 180.0;
+const Eigen::Vector3d kUp(0, -1, 0);
+
+Eigen::Isometry3d Pose(
+    double x_px, double y_px, double distance_m, double yaw_deg = 0.0, double pitch_deg = 0.0) {
+  Placement placement;
+  placement.centre_px = {x_px, y_px};
+  placement.distance_m = distance_m;
+  placement.yaw_rad = yaw_deg * kRadPerDeg;
+  placement.pitch_rad = pitch_deg * kRadPerDeg;
+  return *PoseOf(placement, test::TestCamera(), kUp);
+}
+
+std::string FromNothing(const Eigen::Isometry3d& T_camera_board) {
+  return HoldWords(T_camera_board, {}, test::TestCamera(), kUp);
+}
+
+std::string FromLast(const Eigen::Vector3d& last_m, const Eigen::Vector3d& next_m) {
+  Eigen::Isometry3d T_camera_board = Pose(960, 604, 2.0);
+  T_camera_board.linear().col(2) = -next_m.normalized();
+  T_camera_board.translation() = next_m;
+  return HoldWords(T_camera_board, last_m, test::TestCamera(), kUp);
+}
+
+TEST(HoldWords, OfTheFirstPoseStartFromTheCamera) {
+  EXPECT_EQ(FromNothing(Pose(960, 604, 2.04)),
+            "Hold the board 2 m from the camera, in the middle of the image. Hold it as a diamond, "
+            "facing the camera.");
+  EXPECT_EQ(FromNothing(Pose(300, 200, 1.23, 0, 33)),
+            "Hold the board 1.2 m from the camera, in the upper left part of the image. Hold it as "
+            "a diamond, the top 30 degrees towards the camera.");
+  EXPECT_EQ(FromNothing(Pose(1700, 604, 3.3, -18, -41)),
+            "Hold the board 3.5 m from the camera, in the right part of the image. Hold it as a "
+            "diamond, the bottom 40 degrees and the right side 20 degrees towards the camera.");
+}
+
+TEST(HoldWords, OfFurtherPosesSayWhereToMove) {
+  EXPECT_EQ(FromLast({0, 0, 2}, {-0.52, 0, 3.97}),
+            "Move the board 2 m away from the camera and half a metre to the left. Hold it as a "
+            "diamond, facing the camera.");
+  EXPECT_EQ(FromLast({0, 0, 3}, {0.33, -0.24, 1.9}),
+            "Move the board 1.1 m towards the camera, 30 cm to the right and 20 cm up. Hold it as "
+            "a diamond, facing the camera.");
+}
+
+TEST(HoldWords, LeaveOutWhatNobodyCanDo) {
+  EXPECT_EQ(FromLast({0, 0, 2}, {0.1, -0.1, 2.1}),
+            "Leave the board where it is. Hold it as a diamond, facing the camera.");
+  EXPECT_EQ(FromNothing(Pose(960, 604, 2.0, 4, -4)),
+            "Hold the board 2 m from the camera, in the middle of the image. Hold it as a diamond, "
+            "facing the camera.");
+}
+
+// A camera that lies on its side: up is where the lidar says.
+TEST(HoldWords, GoByWhatIsUpright) {
+  const Eigen::Vector3d up(1, 0, 0);
+  Eigen::Isometry3d T_camera_board = *PoseOf({{960, 604}, 2.0, 0.0, 0.0}, test::TestCamera(), up);
+  T_camera_board.translation().x() += 0.6;
+  EXPECT_EQ(HoldWords(T_camera_board,
+                      T_camera_board.translation() - Eigen::Vector3d(0.6, 0, 0),
+                      test::TestCamera(),
+                      up)
+                .substr(0, 22),
+            "Move the board 60 cm u");
+}
+
+TEST(EnoughWords, SayWhatIsReachedAndWhatIsAsked) {
+  WorstError worst;
+  worst.error = 4.2461;
+  worst.range_m = 5.0;
+  EXPECT_EQ(EnoughWords(worst, {5.0, ErrorUnit::kMillimetres, 1.0, 5.0}),
+            "Enough: 4.2 mm at worst, at 5 m; 5 mm are asked.");
+}
+
+}  // namespace
+}  // namespace voqcal

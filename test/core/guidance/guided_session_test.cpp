@@ -1,0 +1,52 @@
+// The guidance followed through simulated sessions: `voqcal_figures guidance` in small.
+
+#include "support/guided_session.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "support/synthetic_samples.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr int kNumSessions = 3;
+
+double MedianOfLast(bool is_guided, int num_poses, double test::GuidedStep::*error) {
+  std::vector<double> errors;
+  for (std::uint32_t seed = 1; seed <= kNumSessions; ++seed) {
+    test::GuidedSessionOptions options;
+    options.simulation.T_camera_lidar = test::TestExtrinsic();
+    options.simulation.common_bias_m = 0.02;
+    options.simulation.seed = seed;
+    options.is_guided = is_guided;
+    options.num_poses = num_poses;
+    options.seed = seed;
+    GuidanceOptions guidance;
+    guidance.limits.min_distance_m = 1.5;
+    guidance.limits.max_distance_m = 4.5;
+    errors.push_back(
+        test::SimulateGuidedSession(options, {test::TestBoard(), test::TestCamera(), {}}, guidance)
+            .back().*
+        error);
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors[errors.size() / 2];
+}
+
+TEST(GuidedSession, EndsBetterThanARandomOneOfAsManyPoses) {
+  constexpr int kNumPoses = 7;
+  for (const auto error : {&test::GuidedStep::predicted_error, &test::GuidedStep::true_error}) {
+    EXPECT_LT(MedianOfLast(true, kNumPoses, error), MedianOfLast(false, kNumPoses, error));
+  }
+}
+
+TEST(PosesNeeded, CountsFromWhereAnErrorStaysWithinTheTolerance) {
+  EXPECT_EQ(test::PosesNeeded({9, 4, 6, 5, 3}, 5.0), 4);
+  EXPECT_EQ(test::PosesNeeded({9, 4, 6}, 5.0), 4);
+  EXPECT_EQ(test::PosesNeeded({3, 2}, 5.0), 1);
+}
+
+}  // namespace
+}  // namespace voqcal

@@ -1,0 +1,180 @@
+#include "core/guidance/next_pose.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/geometry/rigid.hpp"
+#include "support/synthetic_samples.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+GuidedRig TestGuidedRig() { return {test::TestBoard(), test::TestCamera(), {}}; }
+
+// Exact samples as the sensors are expected to see them, at the places of the synthetic ones.
+std::vector<BoardSample> Samples(int num_samples) {
+  test::SyntheticSamplesOptions scene;
+  scene.num_samples = num_samples;
+  std::vector<BoardSample> samples = test::SynthesizeSamples(scene);
+  for (BoardSample& sample : samples) {
+    const std::int64_t id = sample.id;
+    sample = ExpectedSample(TransformFromPose(sample.camera.pose),
+                            test::TestExtrinsic(),
+                            test::TestBoard(),
+                            test::TestCamera(),
+                            {});
+    sample.id = id;
+  }
+  return samples;
+}
+
+GuidanceState StateOf(const std::vector<BoardSample>& samples) {
+  GuidanceState state;
+  state.samples = test::Pointers(samples);
+  if (samples.size() < 3) return state;
+  state.belief = ExtrinsicBelief{test::TestExtrinsic(), {}, {}};
+  state.covariance =
+      ExtrinsicInformation(state.samples, *state.belief, LikelihoodOptions{}, 16).Covariance();
+  return state;
+}
+
+NextPose Propose(const std::vector<BoardSample>& samples, const GuidanceOptions& options = {}) {
+  return ProposeNextPose(StateOf(samples), TestGuidedRig(), options);
+}
+
+bool IsSeen(const NextPose& next) {
+  return IsInView(
+      next.T_camera_board, test::TestExtrinsic(), test::TestBoard(), test::TestCamera(), {}, {});
+}
+
+TEST(ProposeNextPose, WithoutASampleStartsFromTheCamera) {
+  const NextPose next = Propose({});
+  EXPECT_EQ(next.problem, "");
+  EXPECT_TRUE(std::isinf(next.worst.error));
+  EXPECT_FALSE(next.is_enough);
+  EXPECT_FALSE(next.T_lidar_board);
+  EXPECT_TRUE(std::isfinite(next.predicted_worst_error));
+  EXPECT_THAT(next.advice, StartsWith("Hold the board "));
+}
+
+TEST(ProposeNextPose, TakesTheExtrinsicFromTheOnlySample) {
+  std::vector<BoardSample> samples = Samples(1);
+  for (const bool is_turned : {false, true}) {
+    if (is_turned) samples[0].lidar.pose = TurnedByHalf(samples[0].lidar.pose);
+    const NextPose next = Propose(samples);
+    EXPECT_EQ(next.problem, "");
+    ASSERT_TRUE(next.T_lidar_board);
+    const Eigen::Isometry3d T_camera_lidar = next.T_camera_board * next.T_lidar_board->inverse();
+    EXPECT_LT(RotationAngleBetween(T_camera_lidar.linear(), test::TestExtrinsic().linear()), 1e-6);
+    EXPECT_TRUE(IsSeen(next));
+    EXPECT_FALSE(next.is_enough);
+    EXPECT_THAT(next.advice, StartsWith("Move the board "));
+  }
+}
+
+TEST(ProposeNextPose, LowersTheWorstErrorWhateverThereIs) {
+  for (int num_samples = 1; num_samples <= 8; ++num_samples) {
+    const NextPose next = Propose(Samples(num_samples));
+    EXPECT_EQ(next.problem, "") << num_samples;
+    EXPECT_TRUE(IsSeen(next)) << num_samples;
+    EXPECT_LT(next.predicted_worst_error, next.worst.error) << num_samples;
+    EXPECT_GT(next.predicted_worst_error, 0.0) << num_samples;
+  }
+}
+
+// Once the asked sample is there, the error is what was promised, and the pose is not asked again.
+TEST(ProposeNextPose, KeepsItsPromise) {
+  std::vector<BoardSample> samples = Samples(4);
+  for (int i = 0; i < 4; ++i) {
+    const NextPose next = Propose(samples);
+    for (const BoardSample& sample : samples) {
+      const Eigen::Isometry3d known = TransformFromPose(sample.camera.pose);
+      EXPECT_TRUE((known.translation() - next.T_camera_board.translation()).norm() > 0.29 ||
+                  AngleBetween(known.linear().col(2), next.T_camera_board.linear().col(2)) > 0.25);
+    }
+    BoardSample sample = ExpectedSample(
+        next.T_camera_board, test::TestExtrinsic(), test::TestBoard(), test::TestCamera(), {});
+    // An expected sample stands for four times as many returns.
+    auto& points = sample.lidar.points_lidar_m.points;
+    const auto thinned = points;
+    for (int k = 1; k < kExpectedThinning; ++k) {
+      points.insert(points.end(), thinned.begin(), thinned.end());
+    }
+    samples.push_back(sample);
+    EXPECT_NEAR(Propose(samples).worst.error / next.predicted_worst_error, 1.0, 1e-3);
+  }
+}
+
+TEST(ProposeNextPose, SaysEnoughWhenTheToleranceIsMet) {
+  const std::vector<BoardSample> samples = Samples(8);
+  GuidanceOptions options;
+  const double worst_mm = Propose(samples).worst.error;
+  options.tolerance.tolerance = 0.99 * worst_mm;
+  EXPECT_FALSE(Propose(samples, options).is_enough);
+  options.tolerance.tolerance = 1.01 * worst_mm;
+  const NextPose next = Propose(samples, options);
+  EXPECT_TRUE(next.is_enough);
+  EXPECT_THAT(next.advice, HasSubstr("Enough"));
+  EXPECT_EQ(next.problem, "");  // one more would still help: its pose is there
+}
+
+TEST(ProposeNextPose, NeverSaysEnoughWithoutAPublishedCovariance) {
+  const std::vector<BoardSample> samples = Samples(8);
+  GuidanceState state = StateOf(samples);
+  state.covariance.reset();
+  GuidanceOptions options;
+  options.tolerance.tolerance = 1000.0;
+  EXPECT_FALSE(ProposeNextPose(state, TestGuidedRig(), options).is_enough);
+}
+
+TEST(ProposeNextPose, KeepsWhatThePublishedCovarianceHasMore) {
+  const std::vector<BoardSample> samples = Samples(6);
+  GuidanceState state = StateOf(samples);
+  const NextPose plain = ProposeNextPose(state, TestGuidedRig(), {});
+  state.covariance = 4.0 * *state.covariance;
+  const NextPose wider = ProposeNextPose(state, TestGuidedRig(), {});
+  EXPECT_NEAR(wider.worst.error, 2.0 * plain.worst.error, 1e-9 * plain.worst.error);
+  EXPECT_NEAR(wider.predicted_worst_error,
+              2.0 * plain.predicted_worst_error,
+              1e-9 * plain.predicted_worst_error);
+  EXPECT_EQ(wider.T_camera_board.matrix(), plain.T_camera_board.matrix());
+}
+
+TEST(ProposeNextPose, CountsPixelsWhereToldTo) {
+  GuidanceOptions options;
+  options.tolerance = {1.0, ErrorUnit::kPixels, 1.0, 5.0};
+  const NextPose next = Propose(Samples(6), options);
+  EXPECT_GT(next.worst.error, 0.1);
+  EXPECT_LT(next.worst.error, 10.0);
+  EXPECT_LT(next.predicted_worst_error, next.worst.error);
+}
+
+TEST(ProposeNextPose, IsTheSameEachTime) {
+  const std::vector<BoardSample> samples = Samples(5);
+  EXPECT_EQ(Propose(samples).T_camera_board.matrix(), Propose(samples).T_camera_board.matrix());
+}
+
+TEST(ProposeNextPose, SaysWhenNothingIsInBothViews) {
+  GuidanceOptions options;
+  options.sensors.min_elevation_rad = 0.6;  // the lidar looks over the camera's image
+  options.sensors.max_elevation_rad = 0.9;
+  const NextPose next = Propose({}, options);
+  EXPECT_THAT(next.problem, HasSubstr("in the view of camera and lidar"));
+  EXPECT_EQ(next.advice, "");
+}
+
+TEST(ProposeNextPose, RefusesBadOptions) {
+  GuidanceOptions options;
+  options.limits.min_rows = -1;
+  EXPECT_EQ(options.Problems().size(), 1u);
+  EXPECT_THROW(Propose({}, options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace voqcal

@@ -73,7 +73,7 @@ class Session {
   }
 
   // As the simulated sessions' boards are: anywhere in the image, at any distance, tilted to 40
-  // degrees each way, within 15 degrees of a diamond.
+  // degrees each way.
   std::optional<Eigen::Isometry3d> Anywhere() {
     Placement placement;
     placement.centre_px = {random_.Uniform(0, rig_.camera.width_px - 1),
@@ -82,7 +82,8 @@ class Session {
         random_.Uniform(guidance_.limits.min_distance_m, guidance_.limits.max_distance_m);
     placement.yaw_rad = random_.Uniform(-40.0, 40.0) * kRadPerDeg;
     placement.pitch_rad = random_.Uniform(-40.0, 40.0) * kRadPerDeg;
-    const double roll_rad = random_.Uniform(-15.0, 15.0) * kRadPerDeg;
+    const double roll_rad =
+        random_.Uniform(-options_.max_random_roll_rad, options_.max_random_roll_rad);
     auto pose = PoseOf(placement, rig_.camera, T_truth_.linear().col(2));
     if (pose) pose->rotate(Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitZ()));
     return pose;

@@ -13,7 +13,8 @@ namespace voqcal::test {
 struct GuidedSessionOptions {
   SimulationOptions simulation;  ///< The truth, and the lidar's faults.
   LidarBoardOptions lidar_board_detector;
-  bool is_guided = true;       ///< Each pose is ProposeNextPose's; otherwise anywhere in view.
+  bool is_guided = true;  ///< Each pose is ProposeNextPose's; otherwise anywhere in view.
+  double max_random_roll_rad = M_PI / 4;  ///< Of a random board from a diamond; 45 degrees: any.
   double place_error_m = 0.2;  ///< RMS distance of a guided board from where it is asked for...
   double turn_error_rad = 10.0 * M_PI / 180.0;  ///< ...and its RMS turn.
   double corner_noise_px = 0.1;                 ///< 1 sigma of each corner in each direction.

@@ -137,7 +137,7 @@ TEST(ProposeNextPose, KeepsWhatThePublishedCovarianceHasMore) {
   const std::vector<BoardSample> samples = Samples(6);
   GuidanceState state = StateOf(samples);
   const NextPose plain = ProposeNextPose(state, TestGuidedRig(), {});
-  state.covariance = 4.0 * *state.covariance;
+  state.covariance = Matrix6d(4.0 * state.covariance.value());
   const NextPose wider = ProposeNextPose(state, TestGuidedRig(), {});
   EXPECT_NEAR(wider.worst.error, 2.0 * plain.worst.error, 1e-9 * plain.worst.error);
   EXPECT_NEAR(wider.predicted_worst_error,

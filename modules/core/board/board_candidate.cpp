@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <set>
-#include <sstream>
 #include <string>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "core/board/board_bend.hpp"
+#include "core/board/board_measurement.hpp"
+#include "core/board/board_verdict.hpp"
 #include "core/board/outline_checks.hpp"
 #include "core/board/outline_doubt.hpp"
 #include "core/board/outline_edges.hpp"
@@ -22,8 +21,6 @@
 
 namespace voqcal {
 namespace {
-
-constexpr std::size_t kMinHits = 30;  // fewer cannot measure a board
 
 OutlineModel ModelOf(const BoardSpec& board, const LidarBoardOptions& options, double range_m) {
   const LidarBeamOptions& beam = options.beam;
@@ -36,17 +33,6 @@ OutlineModel ModelOf(const BoardSpec& board, const LidarBoardOptions& options, d
   model.thickness_m = options.thickness_m;
   model.thickness_sigma_m = options.thickness_sigma_m;
   return model;
-}
-
-Eigen::Isometry3d TransformOf(const PlaneFrame& frame, const RectanglePose& pose) {
-  Eigen::Isometry3d T_lidar_board = Eigen::Isometry3d::Identity();
-  Eigen::Matrix3d R;
-  R.col(0) = std::cos(pose.angle_rad) * frame.e1 + std::sin(pose.angle_rad) * frame.e2;
-  R.col(2) = frame.plane.normal;
-  R.col(1) = R.col(2).cross(R.col(0));
-  T_lidar_board.linear() = R;
-  T_lidar_board.translation() = frame.ToLidar(pose.centre_m);
-  return T_lidar_board;
 }
 
 /// The half-turn of the rectangle whose y axis points up; if that is nearly level, whose x axis
@@ -67,17 +53,6 @@ Eigen::Vector2d LeanOf(const PlaneFrame& frame, const RectanglePose& pose) {
       T_lidar_board.linear().transpose() * T_lidar_board.translation();
   return ray_board.head<2>() / std::abs(ray_board.z());
 }
-
-/// Everything about one patch while it is measured.
-struct Measurement {
-  PatchView view;
-  double hit_band_m;
-  PlaneFrame frame;
-  OutlineModel model;
-  OutlineFit outline;
-  std::vector<std::size_t> board_hits;       // for view.Beam()
-  std::vector<Eigen::Vector3d> positions_m;  // of these, dark as far as bright
-};
 
 /// The beams around a patch, on its own plane.
 Measurement Begin(const PlanarPatch& patch,
@@ -125,7 +100,7 @@ bool RefinePlane(const PointCloud& cloud_lidar_m, Measurement* m) {
   constexpr double kPlaneScaleM = 0.02;  // Cauchy: twice the noise
   constexpr double kMarginM = -0.005;    // the outermost returns are partly of what lies behind
   m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, kMarginM);
-  if (m->board_hits.size() < kMinHits) return false;
+  if (m->board_hits.size() < kMinBoardHits) return false;
   const Eigen::Isometry3d T_lidar_board = TransformOf(m->frame, m->outline.pose);
   const Eigen::Vector3d centre_m = T_lidar_board.translation();
   const Eigen::Vector3d width_axis = T_lidar_board.linear().col(0);
@@ -148,20 +123,11 @@ bool Finish(const PointCloud& cloud_lidar_m, Measurement* m) {
   m->outline = SettleOutline(m->view.Outline(), m->model, m->outline);
   m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, 0.0);
   m->positions_m = EvenlyShaded(*m, m->frame.plane, cloud_lidar_m);
-  return m->board_hits.size() >= kMinHits;
+  return m->board_hits.size() >= kMinBoardHits;
 }
 
 Agreement AgreementOf(const Measurement& m) {
   return Compare(m.view.Outline(), m.model, m.outline.pose);
-}
-
-std::vector<std::uint16_t> RingsOf(const Measurement& m, const PointCloud& cloud_lidar_m) {
-  std::vector<std::uint16_t> rings;
-  if (!cloud_lidar_m.has_ring) return rings;
-  for (const std::size_t i : m.board_hits) {
-    rings.push_back(cloud_lidar_m.points[m.view.Beam(i).point].ring);
-  }
-  return rings;
 }
 
 /// Of [rotation_rad; translation_m], left side. The outline gives the shift in the plane and the
@@ -227,102 +193,6 @@ LidarBoard Describe(const Measurement& m,
   return found;
 }
 
-/// "on the upper left": where `direction_lidar` points in the view of a lidar that looks along
-/// `ray`.
-std::string SideInView(const Eigen::Vector3d& direction_lidar, const Eigen::Vector3d& ray) {
-  constexpr double kEighth = 0.78539816339744831;  // of a turn
-  static constexpr std::array<const char*, 8> kNames = {"on the left",
-                                                        "on the upper left",
-                                                        "at the top",
-                                                        "on the upper right",
-                                                        "on the right",
-                                                        "on the lower right",
-                                                        "at the bottom",
-                                                        "on the lower left"};
-  const Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(ray);
-  const Eigen::Vector3d up = ray.cross(left);
-  const double angle_rad = std::atan2(direction_lidar.dot(up), direction_lidar.dot(left));
-  return kNames[static_cast<std::size_t>(std::lround(angle_rad / kEighth) + 8) % 8];
-}
-
-/// Whether the sensor looks past each edge. A cloud that was cropped to the board shows hardly
-/// anything past any: then its hits alone must do.
-std::array<bool, 4> CoveredPast(const std::array<OutlineEdge, 4>& edges,
-                                const Measurement& m,
-                                const BeamIndex& beams) {
-  constexpr double kPastM = 0.1;
-  constexpr int kFewMisses = 4;  // for each of so many hits
-  const Eigen::Isometry3d T_lidar_board = TransformOf(m.frame, m.outline.pose);
-  const Eigen::Vector2d half_m(m.model.width_m / 2, m.model.height_m / 2);
-  int num_hits = 0;
-  int num_misses = 0;
-  for (const OutlineEdge& edge : edges) {
-    num_hits += edge.num_hits;
-    num_misses += edge.num_misses;
-  }
-  const bool is_cropped = kFewMisses * num_misses < num_hits;
-  std::array<bool, 4> is_covered{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Eigen::Vector2d outward = OutwardOf(i);
-    const Eigen::Vector2d past_m = outward.cwiseProduct(half_m) + kPastM * outward;
-    is_covered[i] =
-        is_cropped || beams.Covers(T_lidar_board * Eigen::Vector3d(past_m.x(), past_m.y(), 0.0));
-  }
-  return is_covered;
-}
-
-/// "on the left", seen from the lidar: where an edge of the rectangle is.
-std::string SideOf(const Measurement& m, std::size_t edge) {
-  const Eigen::Isometry3d T_lidar_board = TransformOf(m.frame, m.outline.pose);
-  const Eigen::Vector2d outward = OutwardOf(edge);
-  const Eigen::Vector3d outward_lidar =
-      T_lidar_board.linear() * Eigen::Vector3d(outward.x(), outward.y(), 0.0);
-  return SideInView(outward_lidar, T_lidar_board.translation());
-}
-
-/// The side on which the outline is open, and what is there instead; nothing if it is closed.
-std::optional<NoLidarBoard> OpenSide(const Measurement& m,
-                                     const BeamIndex& beams,
-                                     const std::array<OutlineEdge, 4>& edges,
-                                     const Agreement& agreement,
-                                     double slack) {
-  constexpr double kMaxShortM = 0.05;   // hits of a closed outline come so near its edge...
-  constexpr double kMaxSpacings = 1.5;  // ...or as near as the beams are to each other
-  const double spacing_m = std::sqrt(m.model.width_m * m.model.height_m /
-                                     static_cast<double>(std::max(m.board_hits.size(), kMinHits)));
-  const double max_short_m = std::max(kMaxShortM, kMaxSpacings * spacing_m);
-  const std::optional<std::size_t> edge =
-      OpenEdge(edges, CoveredPast(edges, m, beams), agreement, max_short_m, slack);
-  if (!edge) return {};
-  const bool is_hidden = IsHidden(m.view.BlockedM(), m.model, m.outline.pose, *edge);
-  return NoLidarBoard{is_hidden ? LidarBoardMiss::kHidden : LidarBoardMiss::kCutOff,
-                      SideOf(m, *edge)};
-}
-
-/// That the board is certainly bent, and by how much; nothing if it may be flat.
-std::optional<NoLidarBoard> Bend(const Measurement& m,
-                                 const PointCloud& cloud_lidar_m,
-                                 double max_bend_m) {
-  constexpr double kCertain = 5.0;  // standard errors, themselves of a dozen scan lines
-  const Eigen::Isometry3d T_board_lidar = TransformOf(m.frame, m.outline.pose).inverse();
-  std::vector<Eigen::Vector3d> points_board_m = m.positions_m;
-  for (Eigen::Vector3d& point_m : points_board_m) point_m = T_board_lidar * point_m;
-  const BoardBend bend =
-      MeasureBend(points_board_m, RingsOf(m, cloud_lidar_m), m.model.width_m, m.model.height_m);
-  if (bend.bend_m - kCertain * bend.sigma_m <= max_bend_m) return {};
-  std::ostringstream detail;
-  detail << "by " << std::lround(bend.bend_m * 1e3) << " mm";
-  return NoLidarBoard{LidarBoardMiss::kBent, detail.str()};
-}
-
-/// Whether the beams leave the rectangle too free, or free to be turned.
-bool IsLoose(const Measurement& m, double max_sigma_m) {
-  constexpr double kMayTurn = 0.25;  // of it: with less, no board was ever found turned
-  const double sigma_m = CornerSigmaM(m.outline, m.model);
-  if (sigma_m > max_sigma_m) return true;
-  return sigma_m > kMayTurn * max_sigma_m && HasTurnedRival(m.view.Outline(), m.model, m.outline);
-}
-
 NoLidarBoard Because(LidarBoardMiss miss) { return {miss, {}}; }
 
 }  // namespace
@@ -359,9 +229,7 @@ Expected<LidarBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
     return Because(LidarBoardMiss::kSizeMismatch);
   const std::array<OutlineEdge, 4> edges = MeasureEdges(outline_beams, m.model, m.outline.pose);
   if (auto open = OpenSide(m, beams, edges, agreement, 1.0)) return *open;
-  if (const auto edge = ScreenedEdge(outline_beams, m.view.BlockedM(), m.model, m.outline.pose)) {
-    return NoLidarBoard{LidarBoardMiss::kHidden, SideOf(m, *edge)};
-  }
+  if (auto screened = ScreenedSide(m)) return *screened;
   const std::array<double, 4> lengths_m = EdgeLengthsM(edges, m.model);
   if (!AreLengthsRight(lengths_m, edges, board.EdgeLengthsM()))
     return Because(LidarBoardMiss::kSizeMismatch);

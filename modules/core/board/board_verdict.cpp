@@ -1,0 +1,120 @@
+#include "core/board/board_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/board/board_bend.hpp"
+#include "core/board/outline_doubt.hpp"
+
+namespace voqcal {
+namespace {
+
+/// "on the upper left": where `direction_lidar` points in the view of a lidar that looks along
+/// `ray`.
+std::string SideInView(const Eigen::Vector3d& direction_lidar, const Eigen::Vector3d& ray) {
+  constexpr double kEighth = 0.78539816339744831;  // of a turn
+  static constexpr std::array<const char*, 8> kNames = {"on the left",
+                                                        "on the upper left",
+                                                        "at the top",
+                                                        "on the upper right",
+                                                        "on the right",
+                                                        "on the lower right",
+                                                        "at the bottom",
+                                                        "on the lower left"};
+  const Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(ray);
+  const Eigen::Vector3d up = ray.cross(left);
+  const double angle_rad = std::atan2(direction_lidar.dot(up), direction_lidar.dot(left));
+  return kNames[static_cast<std::size_t>(std::lround(angle_rad / kEighth) + 8) % 8];
+}
+
+/// Whether the sensor looks past each edge. A cloud that was cropped to the board shows hardly
+/// anything past any: then its hits alone must do.
+std::array<bool, 4> CoveredPast(const std::array<OutlineEdge, 4>& edges,
+                                const Measurement& m,
+                                const BeamIndex& beams) {
+  constexpr double kPastM = 0.1;
+  constexpr int kFewMisses = 4;  // for each of so many hits
+  const Eigen::Isometry3d T_lidar_board = TransformOf(m.frame, m.outline.pose);
+  const Eigen::Vector2d half_m(m.model.width_m / 2, m.model.height_m / 2);
+  int num_hits = 0;
+  int num_misses = 0;
+  for (const OutlineEdge& edge : edges) {
+    num_hits += edge.num_hits;
+    num_misses += edge.num_misses;
+  }
+  const bool is_cropped = kFewMisses * num_misses < num_hits;
+  std::array<bool, 4> is_covered{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector2d outward = OutwardOf(i);
+    const Eigen::Vector2d past_m = outward.cwiseProduct(half_m) + kPastM * outward;
+    is_covered[i] =
+        is_cropped || beams.Covers(T_lidar_board * Eigen::Vector3d(past_m.x(), past_m.y(), 0.0));
+  }
+  return is_covered;
+}
+
+/// "on the left", seen from the lidar: where an edge of the rectangle is.
+std::string SideOf(const Measurement& m, std::size_t edge) {
+  const Eigen::Isometry3d T_lidar_board = TransformOf(m.frame, m.outline.pose);
+  const Eigen::Vector2d outward = OutwardOf(edge);
+  const Eigen::Vector3d outward_lidar =
+      T_lidar_board.linear() * Eigen::Vector3d(outward.x(), outward.y(), 0.0);
+  return SideInView(outward_lidar, T_lidar_board.translation());
+}
+
+}  // namespace
+
+std::optional<NoLidarBoard> OpenSide(const Measurement& m,
+                                     const BeamIndex& beams,
+                                     const std::array<OutlineEdge, 4>& edges,
+                                     const Agreement& agreement,
+                                     double slack) {
+  constexpr double kMaxShortM = 0.05;   // hits of a closed outline come so near its edge...
+  constexpr double kMaxSpacings = 1.5;  // ...or as near as the beams are to each other
+  const double spacing_m =
+      std::sqrt(m.model.width_m * m.model.height_m /
+                static_cast<double>(std::max(m.board_hits.size(), kMinBoardHits)));
+  const double max_short_m = std::max(kMaxShortM, kMaxSpacings * spacing_m);
+  const std::optional<std::size_t> edge =
+      OpenEdge(edges, CoveredPast(edges, m, beams), agreement, max_short_m, slack);
+  if (!edge) return {};
+  const bool is_hidden = IsHidden(m.view.BlockedM(), m.model, m.outline.pose, *edge);
+  return NoLidarBoard{is_hidden ? LidarBoardMiss::kHidden : LidarBoardMiss::kCutOff,
+                      SideOf(m, *edge)};
+}
+
+std::optional<NoLidarBoard> ScreenedSide(const Measurement& m) {
+  const auto edge = ScreenedEdge(m.view.Outline(), m.view.BlockedM(), m.model, m.outline.pose);
+  if (!edge) return {};
+  return NoLidarBoard{LidarBoardMiss::kHidden, SideOf(m, *edge)};
+}
+
+std::optional<NoLidarBoard> Bend(const Measurement& m,
+                                 const PointCloud& cloud_lidar_m,
+                                 double max_bend_m) {
+  constexpr double kCertain = 5.0;  // standard errors, themselves of a dozen scan lines
+  const Eigen::Isometry3d T_board_lidar = TransformOf(m.frame, m.outline.pose).inverse();
+  std::vector<Eigen::Vector3d> points_board_m = m.positions_m;
+  for (Eigen::Vector3d& point_m : points_board_m) point_m = T_board_lidar * point_m;
+  const BoardBend bend =
+      MeasureBend(points_board_m, RingsOf(m, cloud_lidar_m), m.model.width_m, m.model.height_m);
+  if (bend.bend_m - kCertain * bend.sigma_m <= max_bend_m) return {};
+  std::ostringstream detail;
+  detail << "by " << std::lround(bend.bend_m * 1e3) << " mm";
+  return NoLidarBoard{LidarBoardMiss::kBent, detail.str()};
+}
+
+bool IsLoose(const Measurement& m, double max_sigma_m) {
+  constexpr double kMayTurn = 0.25;  // of it: with less, no board was ever found turned
+  const double sigma_m = CornerSigmaM(m.outline, m.model);
+  if (sigma_m > max_sigma_m) return true;
+  return sigma_m > kMayTurn * max_sigma_m && HasTurnedRival(m.view.Outline(), m.model, m.outline);
+}
+
+}  // namespace voqcal

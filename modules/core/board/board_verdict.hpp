@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "core/board/board_measurement.hpp"
+#include "core/board/lidar_beams.hpp"
+#include "core/board/lidar_board_miss.hpp"
+#include "core/board/outline_checks.hpp"
+#include "core/board/outline_edges.hpp"
+#include "core/lidar/point_cloud.hpp"
+
+namespace voqcal {
+
+/// The side on which the outline is open, and what is there instead; nothing if it is closed.
+/// `slack` above 1 loosens it for a rough fit.
+std::optional<NoLidarBoard> OpenSide(const Measurement& m,
+                                     const BeamIndex& beams,
+                                     const std::array<OutlineEdge, 4>& edges,
+                                     const Agreement& agreement,
+                                     double slack);
+
+/// The side past which most of what is seen stands before the plane; nothing if there is none.
+std::optional<NoLidarBoard> ScreenedSide(const Measurement& m);
+
+/// That the board is certainly bent, and by how much; nothing if it may be flat.
+std::optional<NoLidarBoard> Bend(const Measurement& m,
+                                 const PointCloud& cloud_lidar_m,
+                                 double max_bend_m);
+
+/// Whether the beams leave the rectangle too free, or free to be turned.
+bool IsLoose(const Measurement& m, double max_sigma_m);
+
+}  // namespace voqcal

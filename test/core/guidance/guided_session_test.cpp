@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kNumSessions = 3;
 
-double MedianOfLast(bool is_guided, int num_poses, double test::GuidedStep::*error) {
-  std::vector<double> errors;
+std::vector<test::GuidedStep> LastSteps(bool is_guided, int num_poses) {
+  std::vector<test::GuidedStep> last;
   for (std::uint32_t seed = 1; seed <= kNumSessions; ++seed) {
     test::GuidedSessionOptions options;
     options.simulation.T_camera_lidar = test::TestExtrinsic();
@@ -26,19 +26,26 @@ double MedianOfLast(bool is_guided, int num_poses, double test::GuidedStep::*err
     GuidanceOptions guidance;
     guidance.limits.min_distance_m = 1.5;
     guidance.limits.max_distance_m = 4.5;
-    errors.push_back(
+    last.push_back(
         test::SimulateGuidedSession(options, {test::TestBoard(), test::TestCamera(), {}}, guidance)
-            .back().*
-        error);
+            .back());
   }
+  return last;
+}
+
+double Median(const std::vector<test::GuidedStep>& steps, double test::GuidedStep::*error) {
+  std::vector<double> errors;
+  for (const test::GuidedStep& step : steps) errors.push_back(step.*error);
   std::sort(errors.begin(), errors.end());
   return errors[errors.size() / 2];
 }
 
 TEST(GuidedSession, EndsBetterThanARandomOneOfAsManyPoses) {
   constexpr int kNumPoses = 7;
+  const std::vector<test::GuidedStep> guided = LastSteps(true, kNumPoses);
+  const std::vector<test::GuidedStep> at_random = LastSteps(false, kNumPoses);
   for (const auto error : {&test::GuidedStep::predicted_error, &test::GuidedStep::true_error}) {
-    EXPECT_LT(MedianOfLast(true, kNumPoses, error), MedianOfLast(false, kNumPoses, error));
+    EXPECT_LT(Median(guided, error), Median(at_random, error));
   }
 }
 

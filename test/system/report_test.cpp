@@ -80,6 +80,8 @@ TEST_F(SimulatedReport, JsonSaysWhatTheResultSays) {
     EXPECT_TRUE(json["result"].contains(key)) << key;
   }
   EXPECT_THAT(yaml, HasSubstr(json["result"]["made_from"]["log_sha256"].get<std::string>()));
+  EXPECT_THAT(ReadWholeFile(Path("out/report.html")),
+              HasSubstr(json["verdict"]["headline"].get<std::string>()));
   EXPECT_EQ(json["sets"]["chosen"].size(),
             json["result"]["averaged"]["num_sets"].get<std::size_t>());
   const auto& all_voq = json["sets"]["all_voq"];

@@ -13,7 +13,6 @@ import sys
 import jinja2
 
 import svg
-from verdict import judge
 
 HERE = pathlib.Path(__file__).resolve().parent
 AXES = ("x", "y", "z")
@@ -177,7 +176,7 @@ def report(data, overlays):
         data=data,
         result=result,
         style=(HERE / "report.css").read_text(encoding="utf-8"),
-        verdict=judge(data),
+        verdict=data["verdict"],
         sigma=[result["covariance"][i][i] ** 0.5 for i in range(6)],
         histograms=set_histograms(data["sets"]["chosen"]),
         voq=voq_figure(data["sets"]),

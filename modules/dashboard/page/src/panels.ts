@@ -16,7 +16,7 @@ export function showGuidance(guidance: Guidance): void {
   const next = guidance.is_enough || predicted_worst_error === null || !known
     ? ""
     : ` One more sample there: ${number(predicted_worst_error, 1, unit)}.`;
-  setText("advice-why", guidance.problem ? "" : now + next);
+  setText("advice-why", guidance.problem || guidance.is_enough ? "" : now + next);
   const meter = byId<HTMLProgressElement>("enough-meter");
   meter.hidden = !known;
   meter.value = known ? Math.min(1, tolerance / Math.max(worst_error, tolerance, 1e-9)) : 0;

@@ -70,6 +70,8 @@ async function seeTheSensors() {
   await until(() => document.getElementById("image").dataset.utime);
   await until(() => document.getElementById("scene").dataset.utime);
   await until(() => document.getElementById("camera-state").textContent.startsWith("board found"));
+  await until(() => document.getElementById("guidance").dataset.state);
+  say(`guidance: ${await text("advice")}`);
 }
 
 async function discardOne() {

@@ -126,9 +126,14 @@ void Run(const LoadArgs& args) {
   const auto run = std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(60.0 * args.minutes));
   const Clock::time_point end = Clock::now() + run;
-  const Clock::time_point last_word = end + std::chrono::seconds(3);  // for answers and statuses
-  while (Clock::now() < last_word) {
-    is_done = Clock::now() >= end;
+  // Afterwards: two seconds for the modules' last statuses, longer for answers that are still to
+  // come.
+  const auto is_heard_out = [&](Clock::time_point now) {
+    const bool is_answered = report.lidar.NumUnanswered() + report.camera.NumUnanswered() == 0;
+    return now > end + std::chrono::seconds(is_answered ? 2 : 20);
+  };
+  for (auto now = Clock::now(); !is_heard_out(now); now = Clock::now()) {
+    is_done = now >= end;
     bus.HandleOnce(std::chrono::milliseconds(100));
     report.ReadMemoryIfDue();
   }

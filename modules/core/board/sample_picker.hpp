@@ -52,9 +52,9 @@ struct PickerDecision {
 /// The answer depends on the sightings' times only, not on the order in which the two streams
 /// arrive: a sighting is judged once both streams have passed its time, or at Flush. Three
 /// exceptions: a stream whose partner lags by more than 600 frames is judged without it;
-/// RequestCapture takes the next pair that is judged after the request; and where a stream goes back
-/// by more than 2 s (its driver was started again on a recording), all that waits is judged and time
-/// begins anew.
+/// RequestCapture takes the next pair that is judged after the request; and where a stream goes
+/// back by more than 2 s (its driver was started again on a recording), all that waits is judged
+/// and time begins anew.
 class SamplePicker {
  public:
   /// @throws std::invalid_argument if `options` have Problems().

@@ -39,7 +39,7 @@ struct SimulationOptions {
   /// 1 sigma of where a beam goes about where it says it goes: with it the edges of boards are as
   /// blurred as a real VLP-16's.
   double pointing_noise_rad = 0.0013;
-  double dropout = 0.01;              ///< Share of beams without a return.
+  double dropout = 0.01;  ///< Share of beams without a return.
   // Camera.
   double image_noise = 2.0;    ///< 1 sigma, grey levels of 255.
   double image_blur_px = 0.5;  ///< 1 sigma of the lens' blur.

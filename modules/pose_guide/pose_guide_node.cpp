@@ -31,9 +31,11 @@ std::string PoseGuideNode::State() const {
 }
 
 bool PoseGuideNode::Step() {
-  if (!samples_ || (next_ && IsMadeFrom(*samples_, *next_))) return false;
-  if (samples_->num_samples >= kLeastForAnExtrinsic && !HasExtrinsics()) return false;
-  next_ = Propose();
+  if (!samples_) return false;
+  const std::optional<Basis> basis = BestBasis();
+  if (!basis || (next_ && IsMadeFrom(*samples_, *next_) && basis_ == basis)) return false;
+  next_ = Propose(*basis);
+  basis_ = basis;
   Count(next_->problem.empty() ? "proposals" : "without a pose");
   Republish();
   return false;
@@ -43,19 +45,24 @@ void PoseGuideNode::Republish() {
   if (next_) bus_.Publish(rig_.channels.next_pose, *next_);
 }
 
-// Without a refiner, the average is all there will be.
-bool PoseGuideNode::HasExtrinsics() const {
-  return averaged_ && IsMadeFrom(*samples_, *averaged_) &&
-         (!refined_ || IsMadeFrom(*samples_, *refined_));
+std::optional<PoseGuideNode::Basis> PoseGuideNode::BestBasis() const {
+  if (samples_->num_samples < kLeastForAnExtrinsic) return Basis::kSamples;
+  if (!averaged_ || !IsMadeFrom(*samples_, *averaged_)) return std::nullopt;
+  // Without a refiner the average is all there will be; one that was heard before will be again.
+  if (!refined_) return Basis::kAverage;
+  if (!IsMadeFrom(*samples_, *refined_)) return std::nullopt;
+  return Basis::kRefined;
 }
 
-next_pose_t PoseGuideNode::Propose() const {
+next_pose_t PoseGuideNode::Propose(Basis basis) const {
   std::vector<BoardSample> all = FromMessage(*samples_);
   GuidanceState state;
-  if (samples_->num_samples >= kLeastForAnExtrinsic) {
+  if (basis == Basis::kSamples) {
+    state.samples = SamplesWithout(all, {});
+  } else {
     TakeChosen(averaged_->chosen, &all);
     state.samples = SamplesWithout(all, averaged_->inconsistent_ids);
-    if (refined_ && refined_->problem.empty()) {
+    if (basis == Basis::kRefined && refined_->problem.empty()) {
       const BestExtrinsic best = FromMessage(*refined_);
       state.belief = {best.T_camera_lidar, best.Bias(), best.likelihood.noise};
       // Of few samples the residuals may tell none.
@@ -63,8 +70,6 @@ next_pose_t PoseGuideNode::Propose() const {
     } else if (averaged_->problem.empty()) {
       state.belief = {FromMessage(averaged_->T_camera_lidar), {}, {}};
     }
-  } else {
-    state.samples = SamplesWithout(all, {});
   }
   const NextPose next = ProposeNextPose(
       state, {rig_.board, rig_.camera, rig_.extrinsic_refiner.likelihood}, rig_.pose_guide);

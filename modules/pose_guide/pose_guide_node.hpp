@@ -15,7 +15,8 @@
 namespace voqcal {
 
 /// CALIB_SAMPLES and EXTRINSIC_REFINED in, NEXT_POSE out. EXTRINSIC_AVERAGED tells which samples
-/// agree, and serves as the extrinsic where there is no refined one.
+/// agree, and serves as the extrinsic as long as there is no refined one: in whatever order the
+/// three are heard, the pose ends up the same.
 class PoseGuideNode : public Module {
  public:
   /// @param bus  borrowed; must outlive the node.
@@ -27,8 +28,11 @@ class PoseGuideNode : public Module {
   void Republish() override;
 
  private:
-  bool HasExtrinsics() const;
-  next_pose_t Propose() const;
+  // What is known of the extrinsic of the samples as they are.
+  enum class Basis { kSamples, kAverage, kRefined };
+
+  std::optional<Basis> BestBasis() const;  // nothing: what is on its way is waited for
+  next_pose_t Propose(Basis basis) const;
 
   Rig rig_;
   Bus& bus_;
@@ -36,6 +40,7 @@ class PoseGuideNode : public Module {
   std::optional<extrinsic_averaged_t> averaged_;
   std::optional<extrinsic_refined_t> refined_;
   std::optional<next_pose_t> next_;
+  std::optional<Basis> basis_;  // of next_
 };
 
 }  // namespace voqcal

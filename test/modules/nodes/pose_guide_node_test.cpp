@@ -1,6 +1,8 @@
 #include "pose_guide/pose_guide_node.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -55,6 +57,12 @@ void ExpectOneBoard(const next_pose_t& next, const Eigen::Isometry3d& T_camera_l
   }
 }
 
+std::vector<std::uint8_t> Encoded(const next_pose_t& next) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(next.getEncodedSize()));
+  EXPECT_EQ(next.encode(bytes.data(), 0, next.getEncodedSize()), next.getEncodedSize());
+  return bytes;
+}
+
 TEST_F(PoseGuideTest, AsksForAPoseBeforeTheFirstSample) {
   EXPECT_THAT(guide_.State(), HasSubstr("waiting for samples"));
   SendSamples({}, 0);
@@ -106,6 +114,27 @@ TEST_F(PoseGuideTest, GoesByTheAverageWhereThereIsNoRefiner) {
   EXPECT_EQ(poses()[0].problem, "");
   EXPECT_FALSE(poses()[0].is_enough);
   ExpectOneBoard(poses()[0], FromMessage(averages_.messages[0].T_camera_lidar));
+}
+
+// A process that was started again may hear the average first.
+TEST_F(PoseGuideTest, EndsUpTheSameHoweverTheExtrinsicsArrive) {
+  rig_.pose_guide.tolerance.tolerance = 1000.0;
+  PoseGuideNode both_at_once(rig_, &bus_);
+  PoseGuideNode one_by_one(rig_, &bus_);
+  SendSamples(test::NoisySamples(6), 6);
+  Step(&selector_);
+  Step(&estimator_);
+  Step(&one_by_one);
+  ASSERT_THAT(poses(), SizeIs(1));
+  EXPECT_FALSE(poses()[0].is_enough);
+  Step(&refiner_);
+  Step(&one_by_one);
+  Step(&both_at_once);
+  ASSERT_THAT(poses(), SizeIs(3));
+  EXPECT_TRUE(poses()[1].is_enough);
+  EXPECT_EQ(Encoded(poses()[1]), Encoded(poses()[2]));
+  Step(&one_by_one);
+  EXPECT_THAT(poses(), SizeIs(3));  // and no more
 }
 
 TEST_F(PoseGuideTest, SaysEnough) {

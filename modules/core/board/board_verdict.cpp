@@ -33,12 +33,18 @@ std::string SideInView(const Eigen::Vector3d& direction_lidar, const Eigen::Vect
   return kNames[static_cast<std::size_t>(std::lround(angle_rad / kEighth) + 8) % 8];
 }
 
-/// Whether the sensor looks past each edge. A cloud that was cropped to the board shows hardly
-/// anything past any: then its hits alone must do.
+/// Of the hits from each other, in the mean.
+double SpacingM(const Measurement& m) {
+  const auto num = static_cast<double>(std::max(m.board_hits.size(), kMinBoardHits));
+  return std::sqrt(m.model.width_m * m.model.height_m / num);
+}
+
+/// Whether the sensor looks past each edge, as far as a few beams need. A cloud that was cropped to
+/// the board shows hardly anything past any: then its hits alone must do.
 std::array<bool, 4> CoveredPast(const std::array<OutlineEdge, 4>& edges,
                                 const Measurement& m,
                                 const BeamIndex& beams) {
-  constexpr double kPastM = 0.1;
+  const double past_edge_m = std::clamp(2 * SpacingM(m), 0.03, 0.1);
   constexpr int kFewMisses = 4;  // for each of so many hits
   const Eigen::Isometry3d T_lidar_board = TransformOf(m.frame, m.outline.pose);
   const Eigen::Vector2d half_m(m.model.width_m / 2, m.model.height_m / 2);
@@ -52,7 +58,7 @@ std::array<bool, 4> CoveredPast(const std::array<OutlineEdge, 4>& edges,
   std::array<bool, 4> is_covered{};
   for (std::size_t i = 0; i < 4; ++i) {
     const Eigen::Vector2d outward = OutwardOf(i);
-    const Eigen::Vector2d past_m = outward.cwiseProduct(half_m) + kPastM * outward;
+    const Eigen::Vector2d past_m = outward.cwiseProduct(half_m) + past_edge_m * outward;
     is_covered[i] =
         is_cropped || beams.Covers(T_lidar_board * Eigen::Vector3d(past_m.x(), past_m.y(), 0.0));
   }
@@ -77,10 +83,7 @@ std::optional<NoLidarBoard> OpenSide(const Measurement& m,
                                      double slack) {
   constexpr double kMaxShortM = 0.05;   // hits of a closed outline come so near its edge...
   constexpr double kMaxSpacings = 1.5;  // ...or as near as the beams are to each other
-  const double spacing_m =
-      std::sqrt(m.model.width_m * m.model.height_m /
-                static_cast<double>(std::max(m.board_hits.size(), kMinBoardHits)));
-  const double max_short_m = std::max(kMaxShortM, kMaxSpacings * spacing_m);
+  const double max_short_m = std::max(kMaxShortM, kMaxSpacings * SpacingM(m));
   const std::optional<std::size_t> edge =
       OpenEdge(edges, CoveredPast(edges, m, beams), agreement, max_short_m, slack);
   if (!edge) return {};

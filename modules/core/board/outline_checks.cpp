@@ -118,7 +118,7 @@ bool AreLengthsRight(const std::array<double, 4>& measured_m,
     }
   };
   constexpr Tolerance kOfOne{0.03, 4.0, 0.15};
-  constexpr Tolerance kOfMean{0.02, 2.0, 0.08};
+  constexpr Tolerance kOfMean{0.03, 1.5, 0.08};
   for (std::size_t i = 0; i < 2; ++i) {
     // Edge i and the one opposite reach from the edge before to the edge after.
     const double sigma_m =

@@ -47,8 +47,10 @@ std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
 
 /// Whether the edges, measured freely, are as long as they should be: each to within 30 mm (what
 /// spill, thickness and single scan lines leave open) and four standard errors, but never 150 mm;
-/// two opposite ones, which tilted lines lengthen and shorten, in the mean to within 20 mm and two,
-/// but never 80 mm.
+/// two opposite ones, which tilted lines lengthen and shorten, in the mean to within 30 mm and one
+/// and a half, but never 80 mm. In halls full of crates and doors, of a thousand boards each way of
+/// scanning, looser limits take more of these for the board, and tighter ones lose more boards
+/// (`voqcal_figures lidar-detection`).
 bool AreLengthsRight(const std::array<double, 4>& measured_m,
                      const std::array<OutlineEdge, 4>& edges,
                      const std::array<double, 4>& true_m);

@@ -97,20 +97,24 @@ OutlineFit SettleOutline(const std::vector<OutlineBeam>& beams,
                          const OutlineModel& model,
                          OutlineFit fit) {
   constexpr double kSharpM = 0.01;  // below, lines are so dense that the curvature is right
-  constexpr int kNumDirections = 2;
-  for (int i = 0; i < kNumDirections; ++i) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(CovarianceM2(fit, model));
-    const double sigma_m = std::sqrt(axes.eigenvalues().z());
+  // All directions at the start: each is settled across those before it.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(CovarianceM2(fit, model));
+  const Eigen::Vector3d metres = MetresPerUnit(model);
+  Eigen::Matrix3d added = Eigen::Matrix3d::Zero();
+  for (const Eigen::Index i : {2, 1, 0}) {  // the loosest first
+    const double sigma_m = std::sqrt(axes.eigenvalues()[i]);
     if (sigma_m < kSharpM) break;
-    const Eigen::Vector3d direction = axes.eigenvectors().col(2);
+    const Eigen::Vector3d direction = axes.eigenvectors().col(i);
     const Moments posterior = PosteriorAlong(beams, model, fit, direction, sigma_m);
     fit = EvaluateOutline(beams, model, MovedBy(fit, posterior.mean_m * direction, model));
+    fit.information.topLeftCorner<3, 3>() += added;
     // Adding k h h' to the information turns the variance v along h into 1 / (1 / v + k)
     // (Sherman and Morrison 1950).
-    const Eigen::Vector3d h = direction.cwiseProduct(MetresPerUnit(model));
     const double variance_m2 = direction.dot(CovarianceM2(fit, model) * direction);
-    fit.information.topLeftCorner<3, 3>() +=
-        (1 / posterior.variance_m2 - 1 / variance_m2) * h * h.transpose();
+    const Eigen::Vector3d h = direction.cwiseProduct(metres);
+    const double k = 1 / posterior.variance_m2 - 1 / variance_m2;
+    added += k * h * h.transpose();
+    fit.information.topLeftCorner<3, 3>() += k * h * h.transpose();
   }
   return fit;
 }

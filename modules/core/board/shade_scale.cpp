@@ -1,12 +1,13 @@
 #include "core/board/shade_scale.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace voqcal {
 
 double ShadeScale::ShadeOf(float intensity) const {
-  if (!(bright_intensity > dark_intensity)) return 0.0;
+  if (!(bright_intensity > dark_intensity) || !std::isfinite(intensity)) return 0.0;
   const double brightness = (intensity - dark_intensity) / (bright_intensity - dark_intensity);
   return 0.5 - std::clamp(brightness, 0.0, 1.0);
 }
@@ -14,6 +15,9 @@ double ShadeScale::ShadeOf(float intensity) const {
 ShadeScale ShadeScaleOf(std::vector<float> intensities) {
   constexpr double kDarkShare = 0.15;
   constexpr double kBrightShare = 0.85;
+  const auto is_broken = [](float intensity) { return !std::isfinite(intensity); };
+  intensities.erase(std::remove_if(intensities.begin(), intensities.end(), is_broken),
+                    intensities.end());
   if (intensities.empty()) return {};
   const auto at = [&intensities](double share) {
     const auto place =

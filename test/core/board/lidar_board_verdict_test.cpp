@@ -85,6 +85,15 @@ TEST(LidarBoardVerdict, SurfaceThatIsScreenedToTheBoardsSizeIsNone) {
             VerdictOn(SynthesizeLidarBoard(scene)));
 }
 
+TEST(LidarBoardVerdict, BoardThatAFewLinesLeaveTooMuchPlayIsTooLoose) {
+  const PointCloud cloud = SynthesizeLidarBoard(UprightBoard());
+  LidarBoardOptions strict;
+  strict.max_corner_sigma_m = 0.002;
+  const auto found = DetectLidarBoard(cloud, kBoard, strict);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(ToString(found.error()), "too few beams tell its outline");
+}
+
 TEST(LidarBoardVerdict, BentBoardIsNamedWithItsBend) {
   SyntheticLidarBoardOptions scene = UprightBoard();
   scene.num_rings = 64;

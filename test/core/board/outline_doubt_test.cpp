@@ -49,6 +49,26 @@ TEST(SettleOutline, TakesTheMiddleOfWhatTheLinesLeaveOpen) {
   EXPECT_NEAR(CornerSigmaM(settled, model), sigma_m, 0.006);
 }
 
+TEST(SettleOutline, KeepsWhatItAddsAlongTheFirstDirectionWhenItSettlesTheSecond) {
+  // Beams at the corners of squares of 0.15 m: the centre is as free along x as along y.
+  const OutlineModel model = Model();
+  std::vector<OutlineBeam> beams;
+  for (int i = -4; i <= 4; ++i) {
+    for (int j = -4; j <= 4; ++j) {
+      const Eigen::Vector2d position_m = 0.15 * Eigen::Vector2d(i + 0.5, j);
+      beams.push_back(
+          {position_m, std::abs(position_m.x()) < 0.3 && std::abs(position_m.y()) < 0.4});
+    }
+  }
+  const OutlineFit start = RefineOutline(beams, model, {{0.02, 0.01}, 0.0});
+  const OutlineFit settled = SettleOutline(beams, model, start);
+  const Eigen::Matrix3d covariance = settled.PoseCovariance();
+  // Hits end at 0.225 and 0.3, misses begin at 0.375 and 0.45: x may move by 0.075 each way, y by
+  // 0.05.
+  EXPECT_LT(std::sqrt(covariance(0, 0)), 0.15 / std::sqrt(12.0) + 0.01);
+  EXPECT_LT(std::sqrt(covariance(1, 1)), 0.10 / std::sqrt(12.0) + 0.01);
+}
+
 TEST(SettleOutline, LeavesASharpFitAlone) {
   const OutlineModel model = Model();
   const auto beams = Lines({0.01, 0.0}, 0.01, 0.0);

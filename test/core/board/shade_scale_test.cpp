@@ -1,5 +1,6 @@
 #include "core/board/shade_scale.hpp"
 
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -16,6 +17,14 @@ TEST(ShadeScale, DarkIsHalfAndBrightIsMinusHalf) {
 TEST(ShadeScale, TellsNothingWithoutContrast) {
   EXPECT_EQ(ShadeScaleOf({}).ShadeOf(10.0F), 0.0);
   EXPECT_EQ(ShadeScaleOf({7, 7, 7}).ShadeOf(7.0F), 0.0);
+}
+
+TEST(ShadeScale, LeavesOutIntensitiesThatAreNotNumbers) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const ShadeScale scale = ShadeScaleOf({1, nan, 1, 60, nan, 60, 1, 60});
+  EXPECT_EQ(scale.ShadeOf(nan), 0.0);
+  EXPECT_NEAR(scale.ShadeOf(1.0F), 0.5, 0.02);
+  EXPECT_EQ(scale.ShadeOf(60.0F), -0.5);
 }
 
 TEST(DarkStepM, IsTheDifferenceOfDarkAndBright) {

@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/estimation/left_perturbation.hpp"
+#include "core/estimation/lidar_bias.hpp"
 #include "core/geometry/rigid.hpp"
 
 namespace voqcal {
@@ -16,6 +17,7 @@ namespace {
 
 // A covariance that is still regular where nothing is known: a metre, a radian.
 constexpr double kLeastInformation = 1.0;
+static_assert(kMaxRings == 256, "Problems() says so");
 
 double AzimuthRad(const Eigen::Vector3d& point_m) { return std::atan2(point_m.y(), point_m.x()); }
 
@@ -209,6 +211,8 @@ std::vector<std::string> SensorExpectation::Problems() const {
           "max_azimuth_deg must be within 0 and 180",
           kDegrees * max_azimuth_rad);
   require(num_rows >= 2, "num_rows must be at least 2", num_rows);
+  // An offset of each row is an unknown of a dense equation.
+  require(num_rows <= static_cast<int>(kMaxRings), "num_rows must be at most 256", num_rows);
   require(column_step_rad > 0.0 && column_step_rad < 0.1,
           "column_step_deg must be within 0 and 5",
           kDegrees * column_step_rad);

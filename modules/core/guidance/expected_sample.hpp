@@ -17,8 +17,8 @@ struct SensorExpectation {
   double min_elevation_rad = -15.0 * M_PI / 180.0;  ///< The lidar's field of view: lowest row...
   double max_elevation_rad = 15.0 * M_PI / 180.0;   ///< ...and highest, evenly spaced between.
   double max_azimuth_rad = M_PI;                    ///< To both sides of the lidar's x axis.
-  int num_rows = 16;
-  double column_step_rad = 0.2 * M_PI / 180.0;  ///< From return to return of a row.
+  int num_rows = 16;                                ///< At most kMaxRings.
+  double column_step_rad = 0.2 * M_PI / 180.0;      ///< From return to return of a row.
   double corner_noise_px = 0.1;  ///< 1 sigma of a chessboard corner in each direction.
   LidarBoardOptions detector;    ///< How it sees edges.
 

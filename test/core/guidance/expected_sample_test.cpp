@@ -120,6 +120,11 @@ TEST(SensorExpectation, NamesEachProblem) {
                           "num_rows must be at least 2, is 1",
                           "column_step_deg must be within 0 and 5, is 0",
                           "corner_noise_px must be positive, is 0"));
+  bad = {};
+  bad.num_rows = 256;
+  EXPECT_THAT(bad.Problems(), ElementsAre());
+  bad.num_rows = 257;
+  EXPECT_THAT(bad.Problems(), ElementsAre("num_rows must be at most 256, is 257"));
 }
 
 }  // namespace

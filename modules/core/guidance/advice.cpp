@@ -40,31 +40,15 @@ std::string Joined(const std::vector<std::string>& parts, const char* last_link)
   return text;
 }
 
-struct Axes {
-  Eigen::Vector3d right;
-  Eigen::Vector3d up;
-  Eigen::Vector3d away;
-};
-
-// Upright, seen from behind the camera.
-Axes UprightAxes(const Eigen::Vector3d& up_camera) {
-  Axes axes;
-  axes.up = up_camera.normalized();
-  axes.right = Eigen::Vector3d::UnitZ().cross(axes.up).normalized();
-  axes.away = axes.up.cross(axes.right);
-  return axes;
-}
-
-std::string MoveWords(const Eigen::Vector3d& move_camera_m, const Eigen::Vector3d& up_camera) {
-  const Axes axes = UprightAxes(up_camera);
+std::string MoveWords(const Eigen::Vector3d& move_camera_m) {
   std::vector<std::string> parts;
   const auto add = [&](double length_m, const char* forward, const char* backward) {
     const std::string length = Length(length_m);
     if (!length.empty()) parts.push_back(length + (length_m > 0.0 ? forward : backward));
   };
-  add(axes.away.dot(move_camera_m), " away from the camera", " towards the camera");
-  add(axes.right.dot(move_camera_m), " to the right", " to the left");
-  add(axes.up.dot(move_camera_m), " up", " down");
+  add(move_camera_m.z(), " away from the camera", " towards the camera");
+  add(move_camera_m.x(), " to the right", " to the left");
+  add(-move_camera_m.y(), " up", " down");
   return parts.empty() ? "Leave the board where it is."
                        : "Move the board " + Joined(parts, " and ") + ".";
 }
@@ -84,6 +68,11 @@ std::string PlaceWords(const Placement& placement, const CameraModel& camera) {
   return "Hold the board " + Length(placement.distance_m) + " from the camera, " + where + ".";
 }
 
+std::string TurnWords(const Placement& placement) {
+  const bool is_diamond = std::abs(std::sin(2.0 * placement.turn_rad)) > std::sqrt(0.5);
+  return is_diamond ? "as a diamond" : "upright";
+}
+
 std::string TiltWords(const Placement& placement) {
   std::vector<std::string> parts;
   const std::string pitch = Angle(placement.pitch_rad);
@@ -101,14 +90,13 @@ std::string TiltWords(const Placement& placement) {
 
 std::string HoldWords(const Eigen::Isometry3d& T_camera_board,
                       const std::optional<Eigen::Vector3d>& last_centre_camera_m,
-                      const CameraModel& camera,
-                      const Eigen::Vector3d& up_camera) {
-  const Placement placement = PlacementOf(T_camera_board, camera, up_camera);
-  const std::string where =
-      last_centre_camera_m
-          ? MoveWords(T_camera_board.translation() - *last_centre_camera_m, up_camera)
-          : PlaceWords(placement, camera);
-  return where + " Hold it as a diamond, " + TiltWords(placement) + ".";
+                      const CameraModel& camera) {
+  const Eigen::Vector3d image_up_camera = -Eigen::Vector3d::UnitY();
+  const Placement placement = PlacementOf(T_camera_board, camera, image_up_camera);
+  const std::string where = last_centre_camera_m
+                                ? MoveWords(T_camera_board.translation() - *last_centre_camera_m)
+                                : PlaceWords(placement, camera);
+  return where + " Hold it " + TurnWords(placement) + ", " + TiltWords(placement) + ".";
 }
 
 std::string EnoughWords(const WorstError& worst, const ErrorTolerance& tolerance) {

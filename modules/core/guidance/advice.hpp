@@ -10,17 +10,16 @@
 
 namespace voqcal {
 
-/// How to hold the board so, in words. Left and right are the image's; up is `up_camera`. Lengths
-/// are rounded to 10 cm, or to half metres from 1.5 m on, angles to 10 degrees: what a person can
-/// do.
+/// How to hold the board so, in words, for who looks at the image: left, right and up are the
+/// image's. Lengths are rounded to 10 cm, or to half metres from 1.5 m on, angles to 10 degrees,
+/// turns about the normal to 45: what a person can do.
 ///
 /// "Move the board 1 m away from the camera, half a metre to the left. Hold it as a diamond, the
 /// top 30 degrees towards the camera."
 /// @param last_centre_camera_m  where the board was last; nothing: the words start from the camera.
 std::string HoldWords(const Eigen::Isometry3d& T_camera_board,
                       const std::optional<Eigen::Vector3d>& last_centre_camera_m,
-                      const CameraModel& camera,
-                      const Eigen::Vector3d& up_camera);
+                      const CameraModel& camera);
 
 /// "Enough: 4.2 mm at worst, at 5 m; 5 mm are asked."
 std::string EnoughWords(const WorstError& worst, const ErrorTolerance& tolerance);

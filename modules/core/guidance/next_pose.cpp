@@ -63,11 +63,53 @@ Vector6d Widening(const std::optional<Matrix6d>& published, const Matrix6d& leas
   return (published->diagonal().cwiseQuotient(least.diagonal())).cwiseSqrt().cwiseMax(1.0);
 }
 
+enum class Refusal { kNone, kOutOfView, kKnown, kTooFewRows };
+
 struct Candidate {
   Placement placement;
+  Refusal refusal = Refusal::kOutOfView;
   Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();
-  double worst_error = std::numeric_limits<double>::infinity();
+  double worst_error = std::numeric_limits<double>::infinity();  // as of any refused
 };
+
+// Why none of the places that were looked at does, the most frequent reason first.
+std::string RefusalWords(const std::vector<Candidate>& refused, const PlacementLimits& limits) {
+  struct Reason {
+    std::ptrdiff_t num_places;
+    std::string text;
+  };
+  const auto reason = [&](Refusal refusal, const std::string& text) -> Reason {
+    return {std::count_if(refused.begin(),
+                          refused.end(),
+                          [&](const Candidate& each) { return each.refusal == refusal; }),
+            text};
+  };
+  std::array<Reason, 3> reasons = {
+      reason(Refusal::kOutOfView, "not wholly in the view of camera and lidar within the limits"),
+      reason(Refusal::kKnown, "like a sample's"),
+      reason(Refusal::kTooFewRows,
+             "where the lidar has fewer than " + std::to_string(limits.min_rows) + " rows")};
+  std::stable_sort(reasons.begin(), reasons.end(), [](const Reason& a, const Reason& b) {
+    return a.num_places > b.num_places;
+  });
+  std::string text =
+      "nowhere can the board be held: of " + std::to_string(refused.size()) + " places ";
+  for (std::size_t i = 0; i < reasons.size() && reasons[i].num_places > 0; ++i) {
+    const auto& [num_places, why] = reasons[i];
+    text += (i > 0 ? ", " : "") + std::to_string(num_places) +
+            (num_places == 1 ? " is " : " are ") + why;
+  }
+  return text;
+}
+
+// Across the lidar's rows, so that they cross all four edges of a diamond. Where it looks along the
+// camera's axis its rows are rings around that axis, and the image's up does as well.
+Eigen::Vector3d UpOf(const Eigen::Isometry3d& T_camera_lidar) {
+  constexpr double kLeastAngleRad = 30.0 * kRadPerDeg;
+  const Eigen::Vector3d up_camera = T_camera_lidar.linear().col(2);
+  const double sine = up_camera.head<2>().norm();
+  return sine >= std::sin(kLeastAngleRad) ? up_camera : Eigen::Vector3d(-Eigen::Vector3d::UnitY());
+}
 
 /// Judges placements and searches the best of them.
 class PoseSearch {
@@ -79,23 +121,44 @@ class PoseSearch {
       : rig_(rig),
         options_(options),
         T_camera_lidar_(belief.T_camera_lidar),
+        up_camera_(UpOf(belief.T_camera_lidar)),
         scene_(rig.camera, belief.T_camera_lidar, options.tolerance),
         information_(
             state.samples, belief, rig.likelihood, NumRings(state.samples, options.sensors)),
         least_covariance_(information_.Covariance()),
-        widening_(Widening(state.covariance, least_covariance_)) {
+        widening_(Widening(state.covariance, least_covariance_)),
+        covariance_(state.covariance.value_or(least_covariance_)) {
     for (const BoardSample* sample : state.samples) {
       known_T_camera_board_.push_back(TransformFromPose(sample->camera.pose));
     }
   }
 
-  Eigen::Vector3d Up() const { return T_camera_lidar_.linear().col(2); }
-  WorstError WorstNow() const { return scene_.Worst(Widened(least_covariance_)); }
+  WorstError WorstNow() const { return scene_.Worst(covariance_); }
 
-  // Its error is infinite if nothing is in both sensors' view.
-  Candidate Best() const {
+  // Facing the camera; tilts are left to Climb.
+  std::vector<Candidate> Grid() const {
+    constexpr std::array<double, 5> kColumns = {0.15, 0.325, 0.5, 0.675, 0.85};
+    constexpr std::array<double, 5> kRows = {0.3, 0.4, 0.5, 0.6, 0.7};
+    constexpr std::array<double, 5> kDistances = {0.1, 0.3, 0.5, 0.7, 0.9};
+    const double extent_m = options_.limits.max_distance_m - options_.limits.min_distance_m;
+    std::vector<Candidate> candidates;
+    for (const double column : kColumns) {
+      for (const double row : kRows) {
+        for (const double distance : kDistances) {
+          Placement placement;
+          placement.centre_px = {column * (rig_.camera.width_px - 1),
+                                 row * (rig_.camera.height_px - 1)};
+          placement.distance_m = options_.limits.min_distance_m + distance * extent_m;
+          candidates.push_back(Judge(placement));
+        }
+      }
+    }
+    return candidates;
+  }
+
+  // Searched from the best of `starts`; refused if all that it met are.
+  Candidate Best(std::vector<Candidate> starts) const {
     constexpr std::size_t kNumStarts = 4;
-    std::vector<Candidate> starts = Grid();
     const std::size_t num_starts = std::min(kNumStarts, starts.size());
     std::partial_sort(starts.begin(),
                       starts.begin() + static_cast<std::ptrdiff_t>(num_starts),
@@ -126,40 +189,22 @@ class PoseSearch {
   Candidate Judge(const Placement& placement) const {
     Candidate candidate;
     candidate.placement = placement;
-    const auto pose = PoseOf(placement, rig_.camera, Up());
-    if (!pose) return candidate;
-    candidate.T_camera_board = *pose;
-    if (!IsInView(
-            *pose, T_camera_lidar_, rig_.board, rig_.camera, options_.sensors, options_.limits) ||
-        !IsNew(*pose)) {
+    const auto pose = PoseOf(placement, rig_.camera, up_camera_);
+    if (!pose ||
+        !IsInView(
+            *pose, T_camera_lidar_, rig_.board, rig_.camera, options_.sensors, options_.limits)) {
       return candidate;
     }
+    candidate.T_camera_board = *pose;
+    candidate.refusal = Refusal::kKnown;
+    if (!IsNew(*pose)) return candidate;
     const BoardSample sample =
         ExpectedSample(*pose, T_camera_lidar_, rig_.board, rig_.camera, options_.sensors);
+    candidate.refusal = Refusal::kTooFewRows;
     if (sample.lidar.num_beams < options_.limits.min_rows) return candidate;
+    candidate.refusal = Refusal::kNone;
     candidate.worst_error = scene_.Worst(Widened(information_.CovarianceWith(sample))).error;
     return candidate;
-  }
-
-  // Facing the camera; tilts are left to Climb.
-  std::vector<Candidate> Grid() const {
-    constexpr std::array<double, 5> kColumns = {0.15, 0.325, 0.5, 0.675, 0.85};
-    constexpr std::array<double, 5> kRows = {0.3, 0.4, 0.5, 0.6, 0.7};
-    constexpr std::array<double, 5> kDistances = {0.1, 0.3, 0.5, 0.7, 0.9};
-    const double extent_m = options_.limits.max_distance_m - options_.limits.min_distance_m;
-    std::vector<Candidate> candidates;
-    for (const double column : kColumns) {
-      for (const double row : kRows) {
-        for (const double distance : kDistances) {
-          Placement placement;
-          placement.centre_px = {column * (rig_.camera.width_px - 1),
-                                 row * (rig_.camera.height_px - 1)};
-          placement.distance_m = options_.limits.min_distance_m + distance * extent_m;
-          candidates.push_back(Judge(placement));
-        }
-      }
-    }
-    return candidates;
   }
 
   // Steps along each of the five numbers, both ways, as long as one of them is better; then halves.
@@ -190,10 +235,12 @@ class PoseSearch {
   const GuidedRig& rig_;
   const GuidanceOptions& options_;
   Eigen::Isometry3d T_camera_lidar_;
+  Eigen::Vector3d up_camera_;
   ErrorScene scene_;
   ExtrinsicInformation information_;
   Matrix6d least_covariance_;
   Vector6d widening_;
+  Matrix6d covariance_;
   std::vector<Eigen::Isometry3d> known_T_camera_board_;
 };
 
@@ -217,9 +264,11 @@ NextPose ProposeNextPose(const GuidanceState& state,
   next.worst = search.WorstNow();
   if (state.samples.empty()) next.worst.error = std::numeric_limits<double>::infinity();
   next.is_enough = state.covariance && next.worst.error <= options.tolerance.tolerance;
-  const Candidate best = search.Best();
-  if (!std::isfinite(best.worst_error)) {
-    next.problem = "nowhere within the limits is the whole board in the view of camera and lidar";
+  if (next.is_enough) next.advice = EnoughWords(next.worst, options.tolerance);
+  const std::vector<Candidate> starts = search.Grid();
+  const Candidate best = search.Best(starts);
+  if (best.refusal != Refusal::kNone) {
+    next.problem = RefusalWords(starts, options.limits);
     return next;
   }
   next.predicted_worst_error = best.worst_error;
@@ -227,11 +276,10 @@ NextPose ProposeNextPose(const GuidanceState& state,
   if (state.belief || !state.samples.empty()) {
     next.T_lidar_board = belief.T_camera_lidar.inverse() * best.T_camera_board;
   }
+  if (next.is_enough) return next;
   std::optional<Eigen::Vector3d> last_centre_camera_m;
   if (!state.samples.empty()) last_centre_camera_m = state.samples.back()->camera.pose.centre_m;
-  next.advice = next.is_enough
-                    ? EnoughWords(next.worst, options.tolerance)
-                    : HoldWords(next.T_camera_board, last_centre_camera_m, rig.camera, search.Up());
+  next.advice = HoldWords(next.T_camera_board, last_centre_camera_m, rig.camera);
   return next;
 }
 

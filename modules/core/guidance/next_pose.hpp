@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,24 +46,27 @@ struct GuidanceState {
 
 /// Where to hold the board next, and whether another sample is needed.
 struct NextPose {
-  std::string problem;  ///< Why there is none: no pose is in both sensors' view.
-  WorstError worst;     ///< With the samples so far; infinite without any.
+  std::string problem;  ///< Why no pose is asked for; what describes one is then meaningless.
+  /// By the published covariance; without one, by what the samples tell. Infinite without any.
+  WorstError worst;
   /// The published covariance keeps the tolerance. The samples' information alone does not do: it
   /// knows nothing of errors that the likelihood does not model.
   bool is_enough = false;
-  double predicted_worst_error = 0.0;  ///< After a sample of the pose.
+  /// After a sample of the pose; NaN if there is none.
+  double predicted_worst_error = std::numeric_limits<double>::quiet_NaN();
   Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();
   std::optional<Eigen::Isometry3d> T_lidar_board;  ///< Nothing as long as no extrinsic is known.
-  std::string advice;                              ///< HoldWords, or EnoughWords.
+  std::string advice;  ///< EnoughWords if it is, else HoldWords; empty if there is a problem.
 };
 
 /// The board's pose that lowers the worst predicted error most, of all that both sensors can see
 /// well and that are not like a sample's: the best of a coarse grid of places, then searched on
 /// with tilts in ever smaller steps.
 ///
-/// A covariance C that is larger than the samples' information allows (what a resampling or a model
-/// error tells) stays so many times larger with the next sample: of each parameter the ratio of
-/// both 1 sigmas, at least 1, as RefineByLikelihood widens its own.
+/// Predicted is the samples' information and that of the pose, widened: a published covariance C
+/// that is larger than the samples' information allows (what a resampling or a model error tells)
+/// stays so many times larger with the next sample: of each parameter the ratio of both 1 sigmas,
+/// at least 1, as RefineByLikelihood widens its own.
 ///
 /// Without a sample the lidar is taken to look where the camera does.
 /// @throws std::invalid_argument if `options` has Problems().

@@ -20,6 +20,13 @@ Eigen::Matrix3d FacingCamera(const Eigen::Vector3d& centre_camera_m,
   return R_camera_facing;
 }
 
+// Facing the camera, to tilted: R_y(yaw) R_x(pitch).
+Eigen::Matrix3d Tilt(const Placement& placement) {
+  return (Eigen::AngleAxisd(placement.yaw_rad, Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(placement.pitch_rad, Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
 bool IsFacing(const Eigen::Vector3d& centre_m, const Eigen::Vector3d& normal, double max_rad) {
   return AngleBetween(normal, -centre_m) <= max_rad;
 }
@@ -87,17 +94,16 @@ std::vector<std::string> PlacementLimits::Problems() const {
 std::optional<Eigen::Isometry3d> PoseOf(const Placement& placement,
                                         const CameraModel& camera,
                                         const Eigen::Vector3d& up_camera) {
-  using Eigen::AngleAxisd;
-  using Eigen::Vector3d;
+  constexpr double kLeastAngleRad = 10.0 * M_PI / 180.0;
   const auto ray = camera.Unproject(placement.centre_px);
   if (!ray) return std::nullopt;
+  const double sine = up_camera.normalized().cross(ray->normalized()).norm();
+  if (sine < std::sin(kLeastAngleRad)) return std::nullopt;
   Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();
   T_camera_board.translation() = placement.distance_m * *ray;
   T_camera_board.linear() =
-      FacingCamera(*ray, up_camera) *
-      (AngleAxisd(placement.yaw_rad, Vector3d::UnitY()) *
-       AngleAxisd(placement.pitch_rad, Vector3d::UnitX()) * AngleAxisd(M_PI / 4, Vector3d::UnitZ()))
-          .toRotationMatrix();
+      FacingCamera(*ray, up_camera) * Tilt(placement) *
+      Eigen::AngleAxisd(placement.turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   return T_camera_board;
 }
 
@@ -105,14 +111,17 @@ Placement PlacementOf(const Eigen::Isometry3d& T_camera_board,
                       const CameraModel& camera,
                       const Eigen::Vector3d& up_camera) {
   const Eigen::Vector3d centre_m = T_camera_board.translation();
-  const Eigen::Vector3d normal =
-      FacingCamera(centre_m, up_camera).transpose() * T_camera_board.linear().col(2);
+  const Eigen::Matrix3d R_facing_board =
+      FacingCamera(centre_m, up_camera).transpose() * T_camera_board.linear();
+  const Eigen::Vector3d normal = R_facing_board.col(2);
   Placement placement;
   placement.centre_px = camera.Project(centre_m);
   placement.distance_m = centre_m.norm();
   // R_y(yaw) R_x(pitch) z = (cos(pitch) sin(yaw), -sin(pitch), cos(pitch) cos(yaw))
   placement.yaw_rad = std::atan2(normal.x(), normal.z());
   placement.pitch_rad = -std::asin(std::clamp(normal.y(), -1.0, 1.0));
+  const Eigen::Vector3d x_untilted = Tilt(placement).transpose() * R_facing_board.col(0);
+  placement.turn_rad = std::atan2(x_untilted.y(), x_untilted.x());
   return placement;
 }
 

@@ -33,17 +33,19 @@ struct Placement {
   double distance_m = 0.0;  ///< Of its centre from the camera.
   double yaw_rad = 0.0;    ///< From facing the camera: its left side (in the image) comes nearer...
   double pitch_rad = 0.0;  ///< ...and then its top does.
+  /// About its normal from upright; as a diamond, whose edges all cross upright's level lines.
+  double turn_rad = M_PI / 4;
 };
 
-/// T_camera_board of a board that is held as a diamond, so that scan lines cross all four edges:
-/// turned by 45 degrees about its normal from upright.
-/// @param up_camera  direction of upright; not along the ray of the board's centre.
-/// @return nothing where the lens has no ray.
+/// T_camera_board of a board that is held so.
+/// @param up_camera  direction of upright.
+/// @return nothing where the lens has no ray, or where it is less than 10 degrees from up or down:
+/// nothing is upright there.
 std::optional<Eigen::Isometry3d> PoseOf(const Placement& placement,
                                         const CameraModel& camera,
                                         const Eigen::Vector3d& up_camera);
 
-/// The placement of a board wherever it is, but for its turn about the normal.
+/// The placement of a board wherever it is. Its angles are meaningless where PoseOf has nothing.
 Placement PlacementOf(const Eigen::Isometry3d& T_camera_board,
                       const CameraModel& camera,
                       const Eigen::Vector3d& up_camera);

@@ -22,14 +22,14 @@ Eigen::Isometry3d Pose(
 }
 
 std::string FromNothing(const Eigen::Isometry3d& T_camera_board) {
-  return HoldWords(T_camera_board, {}, test::TestCamera(), kUp);
+  return HoldWords(T_camera_board, {}, test::TestCamera());
 }
 
 std::string FromLast(const Eigen::Vector3d& last_m, const Eigen::Vector3d& next_m) {
   Eigen::Isometry3d T_camera_board = Pose(960, 604, 2.0);
   T_camera_board.linear().col(2) = -next_m.normalized();
   T_camera_board.translation() = next_m;
-  return HoldWords(T_camera_board, last_m, test::TestCamera(), kUp);
+  return HoldWords(T_camera_board, last_m, test::TestCamera());
 }
 
 TEST(HoldWords, OfTheFirstPoseStartFromTheCamera) {
@@ -61,17 +61,25 @@ TEST(HoldWords, LeaveOutWhatNobodyCanDo) {
             "facing the camera.");
 }
 
-// A camera that lies on its side: up is where the lidar says.
-TEST(HoldWords, GoByWhatIsUpright) {
-  const Eigen::Vector3d up(1, 0, 0);
-  Eigen::Isometry3d T_camera_board = *PoseOf({{960, 604}, 2.0, 0.0, 0.0}, test::TestCamera(), up);
-  T_camera_board.translation().x() += 0.6;
-  EXPECT_EQ(HoldWords(T_camera_board,
-                      T_camera_board.translation() - Eigen::Vector3d(0.6, 0, 0),
-                      test::TestCamera(),
-                      up)
-                .substr(0, 22),
-            "Move the board 60 cm u");
+// A lidar that is rolled against the camera: a diamond to its rows is none in the image.
+TEST(HoldWords, GoByTheImageHoweverTheLidarIsTurned) {
+  const auto words = [](double roll_deg) {
+    const double roll_rad = roll_deg * kRadPerDeg;
+    const Eigen::Vector3d up(std::sin(roll_rad), -std::cos(roll_rad), 0);
+    const Eigen::Isometry3d T_camera_board =
+        *PoseOf({{960, 604}, 2.0, 0.0, 30 * kRadPerDeg}, test::TestCamera(), up);
+    const Eigen::Vector3d move_m(0.6, 0, 0);
+    return HoldWords(T_camera_board, T_camera_board.translation() - move_m, test::TestCamera());
+  };
+  EXPECT_EQ(words(0),
+            "Move the board 60 cm to the right. Hold it as a diamond, the top 30 degrees towards "
+            "the camera.");
+  EXPECT_EQ(words(45),
+            "Move the board 60 cm to the right. Hold it upright, the top 20 degrees and the right "
+            "side 20 degrees towards the camera.");
+  EXPECT_EQ(words(90),
+            "Move the board 60 cm to the right. Hold it as a diamond, the right side 30 degrees "
+            "towards the camera.");
 }
 
 TEST(EnoughWords, SayWhatIsReachedAndWhatIsAsked) {

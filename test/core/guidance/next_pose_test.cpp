@@ -13,6 +13,7 @@ namespace voqcal {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 GuidedRig TestGuidedRig() { return {test::TestBoard(), test::TestCamera(), {}}; }
@@ -124,6 +125,27 @@ TEST(ProposeNextPose, SaysEnoughWhenTheToleranceIsMet) {
   EXPECT_EQ(next.problem, "");  // one more would still help: its pose is there
 }
 
+// The same 1 sigmas, but nothing of an error in one parameter is made up for by another.
+TEST(ProposeNextPose, JudgesEnoughByThePublishedCovarianceItself) {
+  const std::vector<BoardSample> samples = Samples(8);
+  GuidanceState state = StateOf(samples);
+  const double least_mm = Propose(samples).worst.error;
+  state.covariance = Matrix6d(state.covariance->diagonal().asDiagonal());
+  GuidanceOptions options;
+  const double published_mm =
+      ErrorScene(test::TestCamera(), test::TestExtrinsic(), options.tolerance)
+          .Worst(*state.covariance)
+          .error;
+  ASSERT_GT(published_mm, 1.1 * least_mm);
+  options.tolerance.tolerance = 1.05 * least_mm;
+  NextPose next = ProposeNextPose(state, TestGuidedRig(), options);
+  EXPECT_EQ(next.worst.error, published_mm);
+  EXPECT_FALSE(next.is_enough);
+  options.tolerance.tolerance = 1.01 * published_mm;
+  next = ProposeNextPose(state, TestGuidedRig(), options);
+  EXPECT_TRUE(next.is_enough);
+}
+
 TEST(ProposeNextPose, NeverSaysEnoughWithoutAPublishedCovariance) {
   const std::vector<BoardSample> samples = Samples(8);
   GuidanceState state = StateOf(samples);
@@ -165,8 +187,59 @@ TEST(ProposeNextPose, SaysWhenNothingIsInBothViews) {
   options.sensors.min_elevation_rad = 0.6;  // the lidar looks over the camera's image
   options.sensors.max_elevation_rad = 0.9;
   const NextPose next = Propose({}, options);
-  EXPECT_THAT(next.problem, HasSubstr("in the view of camera and lidar"));
+  EXPECT_EQ(next.problem,
+            "nowhere can the board be held: of 125 places 125 are not wholly in the view of camera "
+            "and lidar within the limits");
   EXPECT_EQ(next.advice, "");
+  EXPECT_TRUE(std::isnan(next.predicted_worst_error));
+}
+
+TEST(ProposeNextPose, SaysWhenTheLidarHasTooFewRows) {
+  GuidanceOptions options;
+  options.limits.min_rows = 100;
+  EXPECT_THAT(Propose({}, options).problem, HasSubstr("where the lidar has fewer than 100 rows"));
+  EXPECT_THAT(Propose({}, options).problem, Not(HasSubstr("sample")));
+}
+
+// At one distance, samples everywhere: nothing is new. What there is may still be enough.
+TEST(ProposeNextPose, SaysWhenEveryPlaceIsLikeASample) {
+  GuidanceOptions options;
+  options.limits.min_distance_m = options.limits.max_distance_m = 2.5;
+  options.limits.max_incidence_rad = 7 * M_PI / 180.0;  // no tilt makes it new
+  options.tolerance.tolerance = 1000.0;
+  std::vector<BoardSample> samples;
+  for (int column = 0; column < 16; ++column) {
+    for (int row = 0; row < 10; ++row) {
+      const Placement placement{{60.0 + 120.0 * column, 60.0 + 120.0 * row}, 2.5, 0.0, 0.0};
+      samples.push_back(ExpectedSample(
+          *PoseOf(placement, test::TestCamera(), test::TestExtrinsic().linear().col(2)),
+          test::TestExtrinsic(),
+          test::TestBoard(),
+          test::TestCamera(),
+          {}));
+    }
+  }
+  const NextPose next = Propose(samples, options);
+  EXPECT_THAT(next.problem, HasSubstr("are like a sample's"));
+  EXPECT_TRUE(std::isnan(next.predicted_worst_error));
+  EXPECT_TRUE(next.is_enough);
+  EXPECT_THAT(next.advice, StartsWith("Enough: "));
+}
+
+// The lidar's z is the camera's: it tells no direction of the image.
+TEST(ProposeNextPose, HasAPoseWhereTheLidarLooksAlongTheCamerasAxis) {
+  GuidanceState state;
+  ExtrinsicBelief belief;  // lidar z along camera z
+  belief.T_camera_lidar.translation() = Eigen::Vector3d(0.1, 0.0, 0.0);
+  state.belief = belief;
+  GuidanceOptions options;
+  options.sensors.min_elevation_rad = 40 * M_PI / 180.0;
+  options.sensors.max_elevation_rad = 90 * M_PI / 180.0;
+  options.sensors.num_rows = 64;
+  const NextPose next = ProposeNextPose(state, TestGuidedRig(), options);
+  EXPECT_EQ(next.problem, "");
+  EXPECT_TRUE(next.T_camera_board.matrix().allFinite());
+  EXPECT_THAT(next.advice, HasSubstr("Hold it as a diamond"));
 }
 
 TEST(ProposeNextPose, RefusesBadOptions) {

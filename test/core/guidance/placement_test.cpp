@@ -1,5 +1,7 @@
 #include "core/guidance/placement.hpp"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,6 +36,7 @@ TEST(PoseOf, IsWhatPlacementOfReads) {
   placement.centre_px = {1300, 500};
   placement.yaw_rad = 25 * kRadPerDeg;
   placement.pitch_rad = -35 * kRadPerDeg;
+  placement.turn_rad = 60 * kRadPerDeg;
   const auto pose = PoseOf(placement, test::TestCamera(), Up());
   ASSERT_TRUE(pose);
   const Placement read = PlacementOf(*pose, test::TestCamera(), Up());
@@ -41,6 +44,7 @@ TEST(PoseOf, IsWhatPlacementOfReads) {
   EXPECT_NEAR(read.distance_m, placement.distance_m, 1e-12);
   EXPECT_NEAR(read.yaw_rad, placement.yaw_rad, 1e-12);
   EXPECT_NEAR(read.pitch_rad, placement.pitch_rad, 1e-12);
+  EXPECT_NEAR(read.turn_rad, placement.turn_rad, 1e-12);
 }
 
 TEST(PoseOf, HoldsADiamondThatFacesTheCamera) {
@@ -67,6 +71,22 @@ TEST(PoseOf, TurnsTheSidesThatItNames) {
   const Eigen::Vector3d left_m = *pose * Eigen::Vector3d(-0.3, 0.4, 0);
   EXPECT_LT(left_m.x(), pose->translation().x());
   EXPECT_LT(left_m.norm(), pose->translation().norm());
+}
+
+TEST(PoseOf, IsNothingWhereUpIsAlongTheRay) {
+  const auto pose = [](double angle_deg) {
+    const auto ray = test::TestCamera().Unproject(InTheMiddle(2.0).centre_px);
+    const Eigen::Vector3d across = ray->unitOrthogonal();
+    const double angle_rad = angle_deg * kRadPerDeg;
+    const Eigen::Vector3d up =
+        std::cos(angle_rad) * ray->normalized() + std::sin(angle_rad) * across;
+    return PoseOf(InTheMiddle(2.0), test::TestCamera(), up);
+  };
+  EXPECT_FALSE(pose(0));
+  EXPECT_FALSE(pose(9));
+  EXPECT_TRUE(pose(11));
+  EXPECT_TRUE(pose(169));
+  EXPECT_FALSE(pose(171));
 }
 
 TEST(IsInView, OfAWholeBoardOnly) {

@@ -5,7 +5,7 @@ import type { Check, Events, Guidance, Modules, Result, Sample, Samples } from "
 
 export function showGuidance(guidance: Guidance): void {
   const { unit, tolerance, min_range_m, max_range_m, worst_error, predicted_worst_error } = guidance;
-  const advice = guidance.problem || guidance.advice;
+  const advice = guidance.advice || guidance.problem;
   setText("advice", advice.charAt(0).toUpperCase() + advice.slice(1));
   byId("guidance").dataset.state = guidance.is_enough ? "enough" : "more";
   const where = `between ${min_range_m} and ${max_range_m} m`;

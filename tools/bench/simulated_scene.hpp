@@ -6,13 +6,11 @@
 namespace voqcal {
 
 /// A simulated rig with the board, the camera and about the mounting of the real session.
-inline const Simulation& BenchSimulation() {
-  static const Simulation simulation = [] {
-    SimulationOptions options;
-    options.T_camera_lidar = test::TestExtrinsic();
-    return Simulation(options, test::TestBoard(), test::TestCamera());
-  }();
-  return simulation;
+inline Simulation BenchSimulation(ScanPattern pattern = ScanPattern::kVlp16) {
+  SimulationOptions options;
+  options.T_camera_lidar = test::TestExtrinsic();
+  options.scan.pattern = pattern;
+  return Simulation(options, test::TestBoard(), test::TestCamera());
 }
 
 }  // namespace voqcal

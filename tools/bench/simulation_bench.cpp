@@ -12,7 +12,7 @@ namespace voqcal {
 namespace {
 
 void SimulateSweep(benchmark::State& state) {
-  const Simulation& simulation = BenchSimulation();
+  static const Simulation simulation = BenchSimulation();
   double time_s = 0;
   for (auto _ : state) benchmark::DoNotOptimize(simulation.Sweep(time_s += 0.1));
 }
@@ -25,7 +25,7 @@ void SimulatePattern(benchmark::State& state) {
   options.scan.pattern = static_cast<ScanPattern>(state.range(0));
   const LidarSimulator lidar(
       options, board, Room(DrawClutter({}, board, Room().Interior(), options.seed)));
-  const Simulation& simulation = BenchSimulation();
+  static const Simulation simulation = BenchSimulation();
   state.SetLabel(ToString(options.scan.pattern));
   double time_s = 0;
   for (auto _ : state) {
@@ -37,7 +37,7 @@ void SimulatePattern(benchmark::State& state) {
 BENCHMARK(SimulatePattern)->DenseRange(0, 4)->Unit(benchmark::kMillisecond);
 
 void SimulateImage(benchmark::State& state) {
-  const Simulation& simulation = BenchSimulation();
+  static const Simulation simulation = BenchSimulation();
   double time_s = 0;
   for (auto _ : state) benchmark::DoNotOptimize(simulation.Image(time_s += 0.1));
 }

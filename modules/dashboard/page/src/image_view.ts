@@ -12,7 +12,10 @@ export class ImageView {
   private cloud: CloudFrame | null = null;
   private board: CameraBoard | null = null;
   private guidance: Guidance | null = null;
+  private drawnCloud: CloudFrame | null = null;
   private readonly context: CanvasRenderingContext2D;
+  // Thousands of small rectangles: sooner painted by the processor than described to a graphics card.
+  private readonly points = document.createElement("canvas").getContext("2d", { willReadFrequently: true })!;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -66,18 +69,14 @@ export class ImageView {
     this.drawBoard(scale);
   }
 
+  /** Drawn once a sweep, shown with every image until the next. */
   private drawPoints(scale: number): void {
-    const pixels = this.cloud?.pixels;
-    if (!pixels) return;
-    const { positions_m } = this.cloud!;
-    const size = Math.max(2, this.canvas.width / 320);
-    for (let i = 0; i < pixels.length / 2; ++i) {
-      const u = pixels[2 * i]!;
-      if (u === NOT_SEEN) continue;
-      const range_m = Math.hypot(positions_m[3 * i]!, positions_m[3 * i + 1]!, positions_m[3 * i + 2]!);
-      this.context.fillStyle = rangeColour(range_m);
-      this.context.fillRect(scale * u - size / 2, scale * pixels[2 * i + 1]! - size / 2, size, size);
+    if (!this.cloud?.pixels) return;
+    if (this.drawnCloud !== this.cloud || this.points.canvas.width !== this.canvas.width) {
+      this.drawnCloud = this.cloud;
+      paintPoints(this.points, this.cloud, this.canvas, scale);
     }
+    this.context.drawImage(this.points.canvas, 0, 0);
   }
 
   private drawBoard(scale: number): void {
@@ -115,5 +114,23 @@ export class ImageView {
     context.strokeStyle = colour;
     context.stroke();
     context.setLineDash([]);
+  }
+}
+
+function paintPoints(
+  context: CanvasRenderingContext2D,
+  { positions_m, pixels }: CloudFrame,
+  { width, height }: HTMLCanvasElement,
+  scale: number,
+): void {
+  context.canvas.width = width; // also clears it
+  context.canvas.height = height;
+  const size = Math.max(2, width / 320);
+  for (let i = 0; i < pixels!.length / 2; ++i) {
+    const u = pixels![2 * i]!;
+    if (u === NOT_SEEN) continue;
+    const range_m = Math.hypot(positions_m[3 * i]!, positions_m[3 * i + 1]!, positions_m[3 * i + 2]!);
+    context.fillStyle = rangeColour(range_m);
+    context.fillRect(scale * u - size / 2, scale * pixels![2 * i + 1]! - size / 2, size, size);
   }
 }

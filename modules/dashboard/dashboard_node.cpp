@@ -235,7 +235,7 @@ void DashboardNode::Show(Slot slot, std::string json) {
 template <typename Shower>
 void DashboardNode::Try(const Shower& show) try {
   show();
-} catch (const std::runtime_error& error) {
+} catch (const std::exception& error) {  // of whatever library: a page ends no session
   spdlog::debug("not shown: {}", error.what());
   Count("messages that cannot be shown");
 }

@@ -40,13 +40,25 @@ cv::Mat DecodedSmall(const image_t& image, int factor) {
   return small;
 }
 
+/// At least a pixel high, however flat the image is.
 cv::Mat Small(const image_t& image, int factor) {
   if (image.pixelformat == kPixelMjpeg && factor > 1) return DecodedSmall(image, factor);
   const cv::Mat whole = FromMessage(image);
   if (factor == 1) return whole;
+  const cv::Size size(std::max(whole.cols / factor, 1), std::max(whole.rows / factor, 1));
   cv::Mat small;
-  cv::resize(whole, small, {}, 1.0 / factor, 1.0 / factor, cv::INTER_AREA);
+  cv::resize(whole, small, size, 0, 0, cv::INTER_AREA);
   return small;
+}
+
+std::vector<std::uint8_t> SmallJpeg(const image_t& image, int factor) try {
+  std::vector<std::uint8_t> jpeg;
+  if (!cv::imencode(".jpg", Small(image, factor), jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality})) {
+    throw std::runtime_error("an image that no JPEG can hold");
+  }
+  return jpeg;
+} catch (const cv::Exception& error) {
+  throw std::runtime_error("an image that cannot be made small: " + error.err);
 }
 
 std::string Header(const image_t& image, const char* type) {
@@ -107,14 +119,14 @@ void AppendPixel(const Eigen::Vector3d& point_camera_m,
 }  // namespace
 
 FramePtr ImageFrame(const image_t& image, const DashboardOptions& options) {
+  RequireSound(image);
   const bool is_jpeg = image.pixelformat == kPixelMjpeg;
   const int factor = Reduction(image.width, options.max_image_width_px);
   if (factor == 1 && (is_jpeg || image.pixelformat == kPixelPng)) {
     return BinaryFrame(Header(image, is_jpeg ? "image/jpeg" : "image/png"),
                        {image.data.begin(), image.data.end()});
   }
-  std::vector<std::uint8_t> jpeg;
-  cv::imencode(".jpg", Small(image, factor), jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  const std::vector<std::uint8_t> jpeg = SmallJpeg(image, factor);
   return BinaryFrame(Header(image, "image/jpeg"), {jpeg.begin(), jpeg.end()});
 }
 

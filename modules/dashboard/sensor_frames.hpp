@@ -14,7 +14,7 @@ namespace voqcal {
 
 /// An image for the page: a JPEG or PNG that is small enough as it came, anything else halved until
 /// it fits and as JPEG. The header says the size in pixels of the original.
-/// @throws std::runtime_error if it cannot be decoded.
+/// @throws std::runtime_error if it contradicts itself (RequireSound) or cannot be decoded.
 FramePtr ImageFrame(const image_t& image, const DashboardOptions& options);
 
 /// A sweep for the page, thinned evenly over its scan lines, and where its points fall in the

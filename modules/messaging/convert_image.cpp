@@ -33,7 +33,9 @@ void SetSeq(std::int64_t seq, image_t* message) {
   message->nmetadata = 1;
 }
 
-void CheckSize(const image_t& message) {
+int NumChannels(const image_t& message) { return message.pixelformat == kPixelGray ? 1 : 3; }
+
+void RequireSize(const image_t& message) {
   if (message.width <= 0 || message.height <= 0) Fail(Size(message.width, message.height) + " px");
   if (message.size < 0 || static_cast<std::size_t>(message.size) != message.data.size()) {
     Fail("size is " + std::to_string(message.size) + " but there are " +
@@ -41,8 +43,8 @@ void CheckSize(const image_t& message) {
   }
 }
 
-cv::Mat RawImage(const image_t& message, int num_channels) {
-  const std::int64_t row_bytes = std::int64_t{message.width} * num_channels;
+void RequireRows(const image_t& message) {
+  const std::int64_t row_bytes = std::int64_t{message.width} * NumChannels(message);
   if (message.row_stride < row_bytes) {
     Fail("row_stride is " + std::to_string(message.row_stride) + " but a row has " +
          std::to_string(row_bytes) + " bytes");
@@ -53,7 +55,11 @@ cv::Mat RawImage(const image_t& message, int num_channels) {
     Fail(Size(message.width, message.height) + " px need " + std::to_string(num_needed) +
          " bytes but there are " + std::to_string(message.size));
   }
-  cv::Mat image(message.height, message.width, CV_8UC(num_channels));
+}
+
+cv::Mat RawImage(const image_t& message) {
+  const std::int64_t row_bytes = std::int64_t{message.width} * NumChannels(message);
+  cv::Mat image(message.height, message.width, CV_8UC(NumChannels(message)));
   for (int row = 0; row < message.height; ++row) {
     const std::uint8_t* bytes = message.data.data() + std::int64_t{row} * message.row_stride;
     std::copy(bytes, bytes + row_bytes, image.ptr(row));
@@ -61,8 +67,12 @@ cv::Mat RawImage(const image_t& message, int num_channels) {
   return image;
 }
 
-cv::Mat EncodedImage(const image_t& message) {
-  const std::string format = message.pixelformat == kPixelPng ? "PNG" : "JPEG";
+std::string Format(const image_t& message) {
+  return message.pixelformat == kPixelPng ? "PNG" : "JPEG";
+}
+
+void RequireHeader(const image_t& message) {
+  const std::string format = Format(message);
   const auto info = InspectEncodedImage(message.data);
   if (!info || info->is_jpeg != (message.pixelformat == kPixelMjpeg)) {
     Fail("the data are no " + format);
@@ -78,13 +88,16 @@ cv::Mat EncodedImage(const image_t& message) {
   }
   // libjpeg makes up the missing rest of a cut image in grey, without an error.
   if (!info->has_end) Fail("the " + format + " is cut off");
+}
+
+cv::Mat EncodedImage(const image_t& message) {
   cv::Mat image;
   try {
     image = cv::imdecode(message.data, cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& error) {
-    Fail("the " + format + " cannot be decoded: " + error.err);
+    Fail("the " + Format(message) + " cannot be decoded: " + error.err);
   }
-  if (image.empty()) Fail("the " + format + " cannot be decoded");
+  if (image.empty()) Fail("the " + Format(message) + " cannot be decoded");
   return image;
 }
 
@@ -125,25 +138,29 @@ image_t EncodedToMessage(std::vector<std::uint8_t> bytes, std::int64_t utime, st
   return message;
 }
 
-cv::Mat FromMessage(const image_t& message) {
-  CheckSize(message);
+void RequireSound(const image_t& message) {
+  RequireSize(message);
   switch (message.pixelformat) {
     case kPixelGray:
-      return RawImage(message, 1);
     case kPixelBgr:
-      return RawImage(message, 3);
-    case kPixelRgb: {
-      cv::Mat bgr;
-      cv::cvtColor(RawImage(message, 3), bgr, cv::COLOR_RGB2BGR);
-      return bgr;
-    }
+    case kPixelRgb:
+      return RequireRows(message);
     case kPixelMjpeg:
     case kPixelPng:
-      return EncodedImage(message);
+      return RequireHeader(message);
     default:
       Fail("pixelformat " + std::to_string(message.pixelformat) +
            " is none of GRAY, RGB, BGR, MJPEG, PNG");
   }
+}
+
+cv::Mat FromMessage(const image_t& message) {
+  RequireSound(message);
+  const bool is_encoded = message.pixelformat == kPixelMjpeg || message.pixelformat == kPixelPng;
+  if (is_encoded) return EncodedImage(message);
+  cv::Mat image = RawImage(message);
+  if (message.pixelformat == kPixelRgb) cv::cvtColor(image, image, cv::COLOR_RGB2BGR);
+  return image;
 }
 
 camera_info_t ToMessage(const CameraModel& camera, std::int64_t utime, std::int64_t seq) {

@@ -29,11 +29,18 @@ image_t ToMessage(const cv::Mat& image, std::int64_t utime, std::int64_t seq);
 /// @throws std::runtime_error if they are neither.
 image_t EncodedToMessage(std::vector<std::uint8_t> bytes, std::int64_t utime, std::int64_t seq);
 
-/// The image, 8-bit, GRAY or BGR, decoded if need be, without turning it by its EXIF orientation.
+/// Whatever can be told of an image without decoding it, so that a damaged one costs no memory.
 ///
 /// @throws std::runtime_error with the cause: sizes that contradict each other, an unknown
-///     pixelformat, data that cannot be decoded, or a JPEG without its end. (A JPEG damaged in its
-///     middle decodes to an image with wrong parts: the format has no checksum.)
+///     pixelformat, data of another format, more pixels than any camera has, or a JPEG or PNG
+///     without its end.
+void RequireSound(const image_t& message);
+
+/// The image, 8-bit, GRAY or BGR, decoded if need be, without turning it by its EXIF orientation.
+///
+/// @throws std::runtime_error with the cause: as RequireSound, or data that cannot be decoded. (A
+///     JPEG damaged in its middle decodes to an image with wrong parts: the format has no
+///     checksum.)
 cv::Mat FromMessage(const image_t& message);
 
 camera_info_t ToMessage(const CameraModel& camera, std::int64_t utime, std::int64_t seq);

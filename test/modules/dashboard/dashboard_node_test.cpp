@@ -161,6 +161,15 @@ TEST_F(DashboardNodeTest, CountsWhatItCannotShow) {
   EXPECT_EQ(node_.counters().at("messages that cannot be shown"), 1);
 }
 
+TEST_F(DashboardNodeTest, SurvivesAnImageWithoutBytes) {
+  image_t image{};
+  image.width = 1920;
+  image.height = 1208;
+  image.pixelformat = kPixelMjpeg;
+  EXPECT_NO_THROW(test::Send(&bus_, rig_.channels.camera_image, image));
+  EXPECT_EQ(node_.counters().at("messages that cannot be shown"), 1);
+}
+
 // Without a page it makes a frame a second at most: two images in a row cost one.
 TEST_F(DashboardNodeTest, ShowsNoMoreImagesThanItsRate) {
   for (int i = 0; i < 5; ++i) {

@@ -1,5 +1,6 @@
 #include "dashboard/sensor_frames.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 
@@ -85,6 +86,57 @@ TEST(ImageFrame, RefusesWhatCannotBeDecoded) {
   image = Jpeg(640, 400);
   image.pixelformat = 7;
   EXPECT_THROW(ImageFrame(image, options), std::runtime_error);
+}
+
+TEST(ImageFrame, RefusesAJpegWithoutBytes) {
+  image_t image{};
+  image.pixelformat = kPixelMjpeg;
+  for (const int width_px : {640, 1920}) {
+    image.width = width_px;
+    image.height = 400;
+    EXPECT_THROW(ImageFrame(image, {}), std::runtime_error) << width_px;
+  }
+}
+
+/// The same JPEG with another size in its header (the segment SOF0: its length, 8 bits a sample,
+/// height, width), and in the message.
+image_t WithSize(image_t jpeg, std::uint16_t height, std::uint16_t width) {
+  const std::uint8_t kSof0[] = {0xff, 0xc0};
+  auto size = std::search(jpeg.data.begin(), jpeg.data.end(), kSof0, kSof0 + 2) + 5;
+  for (const std::uint16_t each : {height, width}) {
+    *size++ = static_cast<std::uint8_t>(each >> 8U);
+    *size++ = static_cast<std::uint8_t>(each & 0xffU);
+  }
+  jpeg.width = width;
+  jpeg.height = height;
+  return jpeg;
+}
+
+// OpenCV throws above 2^30 pixels, and takes gigabytes for a little less.
+TEST(ImageFrame, RefusesASizeThatNoCameraHas) {
+  EXPECT_NO_THROW(ImageFrame(WithSize(Jpeg(1280, 800), 800, 1280), {}));
+  EXPECT_THROW(ImageFrame(WithSize(Jpeg(1280, 800), 40000, 40000), {}), std::runtime_error);
+  EXPECT_THROW(ImageFrame(WithSize(Jpeg(1280, 800), 32000, 32000), {}), std::runtime_error);
+}
+
+TEST(ImageFrame, RefusesAJpegOfAnotherSizeThanTheMessages) {
+  for (const int width_px : {640, 1920}) {
+    image_t image = Jpeg(width_px, 400);
+    image.height = 401;
+    EXPECT_THROW(ImageFrame(image, {}), std::runtime_error) << width_px;
+  }
+}
+
+TEST(ImageFrame, ShowsASingleRow) {
+  const Parts parts = Split(ImageFrame(ToMessage(Picture(1920, 1), 17, 0), {}));
+  const cv::Mat shown = cv::imdecode({parts.payload.data(), static_cast<int>(parts.payload.size())},
+                                     cv::IMREAD_GRAYSCALE);
+  EXPECT_EQ(shown.size(), cv::Size(960, 1));
+}
+
+TEST(ImageFrame, RefusesWhatNoJpegCanHold) {
+  const image_t image = ToMessage(cv::Mat(70000, 1, CV_8UC1, cv::Scalar(9)), 17, 0);
+  EXPECT_THROW(ImageFrame(image, {}), std::runtime_error);
 }
 
 /// A spinning lidar's sweep of 16 rings, firing by firing, as its driver orders it.

@@ -49,6 +49,15 @@ std::string_view WithoutPort(std::string_view host) {
   return host.substr(0, host.find(':'));
 }
 
+/// Host names mean the same in either case (RFC 4343), and browsers send small letters.
+std::string InLowerCase(std::string_view name) {
+  std::string lower(name);
+  for (char& letter : lower) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  }
+  return lower;
+}
+
 }  // namespace
 
 std::string NewToken() {
@@ -98,9 +107,9 @@ bool IsSameSecret(std::string_view a, std::string_view b) {
 }
 
 bool IsOwnHost(std::string_view host, std::string_view host_name) {
-  const std::string name(WithoutPort(host));
+  const std::string name = InLowerCase(WithoutPort(host));
   if (name.empty()) return false;
-  if (name == "localhost" || name == host_name) return true;
+  if (name == "localhost" || name == InLowerCase(host_name)) return true;
   boost::system::error_code error;
   boost::asio::ip::make_address(name, error);
   return !error;

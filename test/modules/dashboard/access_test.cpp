@@ -81,6 +81,12 @@ TEST(IsOwnHost, TakesAddressesLocalhostAndTheRigsName) {
   }
 }
 
+TEST(IsOwnHost, TakesNamesInEitherCase) {
+  EXPECT_TRUE(IsOwnHost("cart.local:8765", "Cart.LOCAL"));
+  EXPECT_TRUE(IsOwnHost("CART.local:8765", "cart.local"));
+  EXPECT_TRUE(IsOwnHost("LocalHost:8765", ""));
+}
+
 TEST(IsOwnHost, RefusesOtherNames) {
   for (const char* host : {"",
                            ":8765",

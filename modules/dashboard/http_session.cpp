@@ -18,6 +18,7 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 
 constexpr std::chrono::seconds kRequestTimeout{10};
+constexpr std::chrono::seconds kAnswerTimeout{60};  // the page's script is large for a bad network
 constexpr std::uint32_t kMaxHeaderBytes = 8192;
 constexpr char kExports[] = "export/";
 constexpr int kMaxPages = 16;
@@ -134,6 +135,7 @@ void HttpSession::OnRequest() {
     return;
   }
   response_ = Answer(request, *hub_);
+  stream_.expires_after(kAnswerTimeout);
   http::async_write(
       stream_, response_, [self = shared_from_this()](beast::error_code error, std::size_t) {
         if (!error)

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <set>
@@ -24,19 +26,32 @@ class Page {
 /// Commands on their way from the server's thread to the module's.
 class CommandList {
  public:
-  void Add(const PageRequest& command) {
+  /// @return false if it was refused: more wait than anybody clicks, so a page has gone wild or the
+  /// module is stuck.
+  bool Add(const PageRequest& command) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    // Nobody clicks so fast: more is a page gone wild, or a module that is stuck.
-    if (commands_.size() < 100) commands_.push_back(command);
+    if (commands_.size() >= kMaxWaiting) {
+      ++num_refused_;
+      return false;
+    }
+    commands_.push_back(command);
+    return true;
   }
   std::vector<PageRequest> Take() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::exchange(commands_, {});
   }
+  std::int64_t num_refused() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return num_refused_;
+  }
 
  private:
-  std::mutex mutex_;
+  static constexpr std::size_t kMaxWaiting = 100;
+
+  mutable std::mutex mutex_;
   std::vector<PageRequest> commands_;
+  std::int64_t num_refused_ = 0;
 };
 
 /// What the server's connections share. For the server's thread alone, but for the commands and the

@@ -70,8 +70,8 @@ void PageSession::Take(const std::string& text) {
     refusal_ = Refusal(request.error());
   } else if (request->command.empty()) {
     is_drawing_[static_cast<std::size_t>(request->shown)] = false;
-  } else {
-    hub_->commands.Add(*request);
+  } else if (!hub_->commands.Add(*request)) {
+    refusal_ = Refusal("too many commands wait already: try again");
   }
   SendNext();
 }

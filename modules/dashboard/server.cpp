@@ -1,5 +1,6 @@
 #include "dashboard/server.hpp"
 
+#include <chrono>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -7,6 +8,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
 
 #include "dashboard/http_session.hpp"
@@ -18,6 +20,9 @@ namespace {
 using boost::asio::ip::tcp;
 
 constexpr int kMaxRequests = 64;  // at once; more are turned away
+
+// Out of descriptors, say: to ask again at once would only spin.
+constexpr std::chrono::milliseconds kWaitAfterError{200};
 
 tcp::acceptor Listen(boost::asio::io_context* context, const ServerOptions& options) try {
   const tcp::endpoint endpoint(boost::asio::ip::make_address(options.address), options.port);
@@ -40,11 +45,27 @@ struct DashboardServer::Impl {
   void Accept() {
     acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
       if (error == boost::asio::error::operation_aborted) return;
-      if (!error && hub->num_requests < kMaxRequests) {
-        std::make_shared<HttpSession>(std::move(socket), hub)->Start();
+      if (error) return AcceptLater(error.message());
+      try {
+        Serve(std::move(socket));
+      } catch (const std::exception& failure) {
+        return AcceptLater(failure.what());
       }
       Accept();
     });
+  }
+
+  void AcceptLater(const std::string& cause) {
+    spdlog::debug("a connection was not accepted: {}", cause);
+    timer.expires_after(kWaitAfterError);
+    timer.async_wait([this](boost::system::error_code error) {
+      if (!error) Accept();
+    });
+  }
+
+  void Serve(tcp::socket socket) {
+    if (hub->num_requests >= kMaxRequests) return;
+    std::make_shared<HttpSession>(std::move(socket), hub)->Start();
   }
 
   // What one connection throws (no memory, no descriptors) costs that connection only.
@@ -61,6 +82,7 @@ struct DashboardServer::Impl {
   std::shared_ptr<Hub> hub;
   boost::asio::io_context context{1};
   tcp::acceptor acceptor;
+  boost::asio::steady_timer timer{context};
   std::uint16_t port = 0;
   std::thread thread;
 };
@@ -93,5 +115,9 @@ void DashboardServer::Offer(std::map<std::string, StaticFile> exports) {
 }
 
 std::vector<PageRequest> DashboardServer::TakeCommands() { return impl_->hub->commands.Take(); }
+
+std::int64_t DashboardServer::num_refused_commands() const {
+  return impl_->hub->commands.num_refused();
+}
 
 }  // namespace voqcal

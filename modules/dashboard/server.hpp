@@ -60,6 +60,9 @@ class DashboardServer {
   /// The commands that came since the last call, in order.
   std::vector<PageRequest> TakeCommands();
 
+  /// How many commands were refused because too many waited to be taken.
+  std::int64_t num_refused_commands() const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -9,6 +9,7 @@
 #include <boost/asio/write.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "modules/dashboard/web_client.hpp"
 
@@ -215,6 +216,47 @@ TEST_F(DashboardServerTest, HandsCommandsOver) {
   EXPECT_EQ(commands[0].command, "capture");
   EXPECT_EQ(commands[1].command, "discard");
   EXPECT_EQ(commands[1].sample_id, 3);
+}
+
+// A hundred commands may wait, which nobody takes here.
+TEST_F(DashboardServerTest, RefusesMoreCommandsThanAnybodyClicks) {
+  SocketClient page = Page();
+  for (int i = 0; i < 101; ++i) page.Send(R"({"command": "capture"})");
+  EXPECT_THAT(page.ReadHeader()["reason"].get<std::string>(), HasSubstr("too many commands"));
+  EXPECT_EQ(server_.TakeCommands().size(), 100U);
+  EXPECT_EQ(server_.num_refused_commands(), 1);
+}
+
+/// While it lives, this process can open no more files or connections.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    EXPECT_EQ(getrlimit(RLIMIT_NOFILE, &before_), 0);
+    const rlimit none{0, before_.rlim_max};
+    EXPECT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  }
+  ~NoDescriptors() { setrlimit(RLIMIT_NOFILE, &before_); }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(DashboardServerTest, ServesAgainOnceThereAreDescriptors) {
+  boost::asio::io_context context;
+  test::tcp::socket waiting(context, test::tcp::v4());
+  {
+    const NoDescriptors no_descriptors;
+    waiting.connect({boost::asio::ip::make_address("127.0.0.1"), server_.port()});
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // for the server to fail in
+  }
+  boost::asio::write(waiting, boost::asio::buffer(std::string("GET / HTTP/1.1\r\n\r\n")));
+  std::string answer;
+  boost::system::error_code error;
+  boost::asio::read(waiting, boost::asio::dynamic_buffer(answer), error);
+  EXPECT_THAT(answer, HasSubstr("421"));  // it has no Host
+  EXPECT_EQ(StatusOf(Path(""), {Host(), ""}), 200);
 }
 
 TEST_F(DashboardServerTest, RefusesMalformedRequestsWithoutEffect) {

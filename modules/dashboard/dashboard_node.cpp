@@ -17,7 +17,7 @@ namespace voqcal {
 namespace {
 
 constexpr std::size_t kMaxEvents = 40;
-constexpr std::chrono::milliseconds kCommandPeriod{50};
+constexpr std::chrono::milliseconds kStepPeriod{50};  // a click must not seem to hang
 
 /// With no page open a frame a second is kept ready for the next.
 std::chrono::steady_clock::duration Period(double rate_hz, bool has_pages) {
@@ -88,8 +88,13 @@ std::string DashboardNode::State() const {
   return "running: " + std::to_string(server_.num_pages()) + " pages open";
 }
 
+void DashboardNode::StepIfDue() {
+  if (Clock::now() >= next_step_) Step();
+}
+
 bool DashboardNode::Step() {
-  for (const PageRequest& request : server_.TakeCommands()) SendCommand(request);
+  next_step_ = Clock::now() + kStepPeriod;
+  TakeCommands();
   if (!std::exchange(is_state_new_, false)) return false;
   Try([this] { ShowSamples(); });
   Try([this] { ShowResult(); });
@@ -97,12 +102,16 @@ bool DashboardNode::Step() {
 }
 
 std::optional<std::chrono::steady_clock::time_point> DashboardNode::NextStep() const {
-  return Clock::now() + kCommandPeriod;
+  return next_step_;
 }
 
-void DashboardNode::Republish() { Show(Slot::kModules, heartbeats_.Json(Clock::now())); }
+void DashboardNode::Republish() {
+  StepIfDue();
+  Show(Slot::kModules, heartbeats_.Json(Clock::now()));
+}
 
 void DashboardNode::OnImage(const image_t& message) {
+  StepIfDue();
   const Clock::time_point now = Clock::now();
   if (now < next_image_) return;
   next_image_ = now + Period(rig_.dashboard.image_rate_hz, server_.num_pages() > 0);
@@ -110,6 +119,7 @@ void DashboardNode::OnImage(const image_t& message) {
 }
 
 void DashboardNode::OnPoints(const pointcloud2_t& message) {
+  StepIfDue();
   const Clock::time_point now = Clock::now();
   if (now < next_cloud_) return;
   next_cloud_ = now + Period(rig_.dashboard.cloud_rate_hz, server_.num_pages() > 0);
@@ -136,6 +146,12 @@ int DashboardNode::TakeSameRejects(const event_t& message) {
     return count;
   }
   return 0;
+}
+
+void DashboardNode::TakeCommands() {
+  for (const PageRequest& request : server_.TakeCommands()) SendCommand(request);
+  const std::int64_t num_refused = server_.num_refused_commands();
+  if (num_refused > 0) SetCount("commands refused: too many at once", num_refused);
 }
 
 void DashboardNode::SendCommand(const PageRequest& request) {
@@ -188,15 +204,19 @@ void DashboardNode::ShowNoResult(const std::string& problem) {
   Show(Slot::kResult, NoResultJson(problem, ""));
 }
 
+// The file may come later than the message, or be of other samples: until it fits nothing is given
+// out, and each new state looks again.
 void DashboardNode::OfferExports() {
   if (exports_sha256_ == assessment_->samples_sha256) return;
-  exports_sha256_ = assessment_->samples_sha256;
   exports_.clear();
+  exports_sha256_.clear();
   std::map<std::string, StaticFile> exports;
   try {
-    exports = ExportsOf(result_file_, rig_.camera);
+    exports = ExportsOf(result_file_, assessment_->samples_sha256, rig_.camera);
+    exports_sha256_ = assessment_->samples_sha256;
   } catch (const std::runtime_error& error) {
-    spdlog::warn("nothing to export: {}", error.what());
+    spdlog::debug("nothing to export: {}", error.what());
+    Count("looks for a result file that did not fit");
   }
   for (const auto& [name, file] : exports) exports_.push_back(name);
   server_.Offer(std::move(exports));

@@ -42,6 +42,9 @@ class DashboardNode : public Module {
   using Clock = std::chrono::steady_clock;
 
   void Subscribe();
+  /// Step is for when no message waits; under load that may be never.
+  void StepIfDue();
+  void TakeCommands();
   void OnImage(const image_t& message);
   void OnPoints(const pointcloud2_t& message);
   void OnEvent(const event_t& message);
@@ -68,6 +71,7 @@ class DashboardNode : public Module {
   DashboardServer& server_;
   std::filesystem::path result_file_;
   std::array<std::string, kNumSlots> shown_;
+  Clock::time_point next_step_;
   Clock::time_point next_image_;
   Clock::time_point next_cloud_;
   Heartbeats heartbeats_;

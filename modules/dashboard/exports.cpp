@@ -23,12 +23,18 @@ std::string EndingOf(const std::string& format) {
 }  // namespace
 
 std::map<std::string, StaticFile> ExportsOf(const std::filesystem::path& result_file,
+                                            const std::string& samples_sha256,
                                             const CameraModel& camera) {
+  // Read once: the assessor may put another in its place at any time.
+  const std::string text = ReadWholeFile(result_file);
+  if (LogSha256Of(text, result_file.string()) != samples_sha256) {
+    throw std::runtime_error(result_file.string() + ": is made from other samples");
+  }
   std::map<std::string, StaticFile> exports;
   ExportedExtrinsic extrinsic;
-  extrinsic.T_camera_lidar = ReadExtrinsic(result_file);
+  extrinsic.T_camera_lidar = ExtrinsicOf(text, result_file.string());
   extrinsic.camera = camera;
-  exports["extrinsic.yaml"] = {kText, ReadWholeFile(result_file), true};
+  exports["extrinsic.yaml"] = {kText, text, true};
   for (const std::string& format : ExportFormats()) {
     try {
       exports["extrinsic_" + format + EndingOf(format)] = {

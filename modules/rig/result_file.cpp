@@ -160,8 +160,12 @@ std::string ToYaml(const CalibrationResult& result) {
 }
 
 Eigen::Isometry3d ReadExtrinsic(const std::filesystem::path& path) {
+  return ExtrinsicOf(ReadWholeFile(path), path.string());
+}
+
+Eigen::Isometry3d ExtrinsicOf(const std::string& text, const std::string& name) {
   constexpr double kMaxDisagreement = 1e-3;  // rad and m: what rounding explains.
-  YamlDocument document(path.string(), ReadWholeFile(path));
+  YamlDocument document(name, text);
   YamlSection top(&document);
   YamlSection section = top.RequiredSection("T_camera_lidar");
   document.ThrowIfWrong();
@@ -179,6 +183,17 @@ Eigen::Isometry3d ReadExtrinsic(const std::filesystem::path& path) {
   }
   document.ThrowIfWrong();
   return T_camera_lidar;
+}
+
+std::string LogSha256Of(const std::string& text, const std::string& name) {
+  YamlDocument document(name, text);
+  YamlSection top(&document);
+  YamlSection made_from = top.RequiredSection("made_from");
+  document.ThrowIfWrong();
+  std::string log_sha256;
+  made_from.ReadRequired("log_sha256", &log_sha256);
+  document.ThrowIfWrong();
+  return log_sha256;
 }
 
 }  // namespace voqcal

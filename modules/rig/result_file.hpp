@@ -80,4 +80,11 @@ std::string ToYaml(const CalibrationResult& result);
 ///     transform, or a matrix and a quaternion that contradict each other.
 Eigen::Isometry3d ReadExtrinsic(const std::filesystem::path& path);
 
+/// The same of a text that errors call `name`.
+Eigen::Isometry3d ExtrinsicOf(const std::string& text, const std::string& name);
+
+/// made_from.log_sha256 of such a text: of which samples it is.
+/// @throws std::runtime_error if it has none.
+std::string LogSha256Of(const std::string& text, const std::string& name);
+
 }  // namespace voqcal

@@ -11,6 +11,7 @@
 #include "messaging/convert_image.hpp"
 #include "modules/dashboard/web_client.hpp"
 #include "modules/nodes/chain_test.hpp"
+#include "rig/atomic_file.hpp"
 #include "support/temporary_folder.hpp"
 #include "voq_selector/voq_selector_node.hpp"
 #include "voqcal/command_t.hpp"
@@ -124,6 +125,30 @@ TEST_F(DashboardNodeTest, ExportsAreThoseOfTheResultFile) {
   EXPECT_EQ(file.body(), ToYaml(*assessor_.result()));
 }
 
+TEST_F(DashboardNodeTest, ExportsNoFileOfOtherSamples) {
+  const std::string host = "127.0.0.1:" + std::to_string(server_.port());
+  const auto exported = [&] {
+    Step(&node_);
+    test::SocketClient page = Page();
+    return Next(&page, "result")["exports"].size();
+  };
+  SendSamples(test::NoisySamples(8), 8);
+  Calibrate();
+  const std::string file = ReadWholeFile(folder_.path() / "extrinsic.yaml");
+  std::string other = file;
+  other.replace(other.find("log's hash"), 3, "old");
+  folder_.Write("extrinsic.yaml", other);
+  EXPECT_EQ(exported(), 0U);
+  EXPECT_EQ(test::Request(
+                server_.port(), "/" + TestOptions().token + "/export/extrinsic.yaml", {host, ""})
+                .result_int(),
+            404U);
+  folder_.Write("extrinsic.yaml", file);
+  assessor_.Republish();
+  test::HandleAll(&bus_);
+  EXPECT_GT(exported(), 0U);
+}
+
 TEST_F(DashboardNodeTest, SendsCommands) {
   test::SocketClient page = Page();
   page.Send(R"({"command": "discard", "sample_id": 5})");
@@ -135,6 +160,18 @@ TEST_F(DashboardNodeTest, SendsCommands) {
   EXPECT_EQ(commands_.messages[0].command, "discard");
   EXPECT_EQ(commands_.messages[0].sample_id, 5);
   EXPECT_GT(commands_.messages[0].utime, 0);
+}
+
+// Step is never called: one message after the other is handled.
+TEST_F(DashboardNodeTest, WorksWhileMessagesNeverCease) {
+  SendSamples(test::NoisySamples(3), 3);
+  test::SocketClient page = Page();
+  page.Send(R"({"command": "capture"})");
+  while (commands_.messages.empty()) {
+    test::Send(&bus_, rig_.channels.lidar_points, pointcloud2_t{});
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(Next(&page, "samples")["samples"].size(), 3U);
 }
 
 TEST_F(DashboardNodeTest, CountsRejectsOfOneCause) {

@@ -44,10 +44,10 @@ class DashboardInBrowser : public ::testing::Test {
   std::string session_ = folder_.path() / "session";
 };
 
-// About a minute of stops: more than the script needs.
+// Minutes of stops: more than the script needs, which ends the sensors itself.
 TEST_F(DashboardInBrowser, RunsASessionFromStartToExportByClicks) {
   ASSERT_NO_FATAL_FAILURE(
-      Up(test::Replaced(test::ShortRigText(), "num_poses: 8", "num_poses: 60"), {}));
+      Up(test::Replaced(test::ShortRigText(), "num_poses: 8", "num_poses: 200"), {}));
   const test::Outcome outcome =
       test::Run({kWithNode, "node", Script("dashboard_session.mjs"), session_});
   if (outcome.status == kSkipped) GTEST_SKIP() << outcome.out;

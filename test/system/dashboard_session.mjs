@@ -91,7 +91,7 @@ async function captureByKey() {
 async function surviveTheServer() {
   const before = await numSamples();
   isServerDown = true;
-  execFileSync("supervisorctl", ["-c", join(session, "supervisor.conf"), "signal", "KILL", "dashboard"]);
+  supervisorctl("signal", "KILL", "dashboard");
   await untilState(false);
   await untilState(true);
   isServerDown = false;
@@ -99,7 +99,13 @@ async function surviveTheServer() {
   say("found the server again");
 }
 
+const supervisorctl = (...args) =>
+  execFileSync("supervisorctl", ["-c", join(session, "supervisor.conf"), ...args]);
+
+// The board is laid down first: a sample taken meanwhile would make the exported result that of an earlier set.
 async function finish() {
+  supervisorctl("stop", "lidar_driver", "camera_driver");
+  await until(() => !document.getElementById("stale").hidden);
   await page.getByRole("button", { name: "Finish" }).click();
   await until(() => document.getElementById("finished").textContent !== "");
   await until(() => document.getElementById("verdict").dataset.grade !== "none");

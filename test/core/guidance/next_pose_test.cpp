@@ -235,7 +235,8 @@ TEST(ProposeNextPose, HasAPoseWhereTheLidarLooksAlongTheCamerasAxis) {
   GuidanceOptions options;
   options.sensors.min_elevation_rad = 40 * M_PI / 180.0;
   options.sensors.max_elevation_rad = 90 * M_PI / 180.0;
-  options.sensors.num_rows = 64;
+  options.sensors.num_rows = 24;
+  options.limits.min_rows = 3;
   const NextPose next = ProposeNextPose(state, TestGuidedRig(), options);
   EXPECT_EQ(next.problem, "");
   EXPECT_TRUE(next.T_camera_board.matrix().allFinite());

@@ -244,6 +244,9 @@ class NoDescriptors {
 };
 
 TEST_F(DashboardServerTest, ServesAgainOnceThereAreDescriptors) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "UBSan's check of an object's type needs a descriptor itself";
+#endif
   boost::asio::io_context context;
   test::tcp::socket waiting(context, test::tcp::v4());
   {

@@ -8,10 +8,11 @@
 #include <stdexcept>
 
 #include <boost/asio/ip/address.hpp>
-#include <fcntl.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "rig/atomic_file.hpp"
 
 namespace voqcal {
 namespace {
@@ -34,10 +35,6 @@ std::string TokenOf(const std::string& address) {
   const std::size_t end = address.rfind('/');
   if (end == std::string::npos || end < 2 * kTokenBytes) return "";
   return address.substr(end - 2 * kTokenBytes, 2 * kTokenBytes);
-}
-
-[[noreturn]] void Fail(const std::filesystem::path& file) {
-  throw std::runtime_error(file.string() + ": " + std::strerror(errno));
 }
 
 // "[::1]:8765" and "localhost:8765" without the port and the brackets.
@@ -84,17 +81,7 @@ std::string TokenOfSession(const std::filesystem::path& address_file) {
 }
 
 void SaveAddress(const std::filesystem::path& address_file, const std::string& address) {
-  const std::filesystem::path unfinished = address_file.string() + ".unfinished";
-  std::filesystem::remove(unfinished);
-  // New, so that nobody else has it open; and readable for nobody else from the first byte on.
-  const int file = open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (file < 0) Fail(unfinished);
-  const std::string line = address + "\n";
-  const bool is_written =
-      write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size());
-  const bool is_closed = close(file) == 0;
-  if (!is_written || !is_closed) Fail(unfinished);
-  std::filesystem::rename(unfinished, address_file);
+  WriteFileAtomically(address_file, address + "\n", FileReaders::kOwnerOnly);
 }
 
 bool IsSameSecret(std::string_view a, std::string_view b) {

@@ -96,10 +96,13 @@ std::string ReadWholeFile(const fs::path& path) {
   return contents;
 }
 
-void WriteFileAtomically(const fs::path& path, std::string_view contents) {
+void WriteFileAtomically(const fs::path& path, std::string_view contents, FileReaders readers) {
   const fs::path temporary_path =
       FolderOf(path) / ("." + path.filename().string() + "." + std::to_string(::getpid()) + ".tmp");
-  Descriptor file(::open(temporary_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  // Left by a process that was killed, perhaps; a new one is open to nobody else.
+  ::unlink(temporary_path.c_str());
+  const mode_t mode = readers == FileReaders::kOwnerOnly ? 0600 : 0666;
+  Descriptor file(::open(temporary_path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
   if (!file.is_open()) Fail(path, "cannot be written", errno);
   TemporaryFile temporary(temporary_path);
   if (!WriteAll(file.get(), contents) || ::fsync(file.get()) != 0 || !file.Close()) {

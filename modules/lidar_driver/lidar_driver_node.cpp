@@ -8,6 +8,9 @@ namespace {
 
 using std::chrono::microseconds;
 
+// A capture may pause for hours, or start again at an earlier time: nobody waits for that.
+constexpr microseconds kLongestPause = std::chrono::seconds(2);
+
 raw_t ToMessage(const HostPacket& packet) {
   raw_t message{};
   message.utime = packet.utime;
@@ -50,8 +53,8 @@ void LidarDriverNode::FetchSweep() {
 LidarDriverNode::Clock::time_point LidarDriverNode::DueTime() {
   if (source_->Pace() != SweepPace::kTheirTimes) return next_;
   const microseconds sweep_time(waiting_->utime);
-  if (!steady_minus_sweep_) {
-    const auto now = std::chrono::duration_cast<microseconds>(Clock::now().time_since_epoch());
+  const auto now = std::chrono::duration_cast<microseconds>(Clock::now().time_since_epoch());
+  if (!steady_minus_sweep_ || abs(*steady_minus_sweep_ + sweep_time - now) > kLongestPause) {
     steady_minus_sweep_ = now - sweep_time;
   }
   return Clock::time_point(*steady_minus_sweep_ + sweep_time);

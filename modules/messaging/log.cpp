@@ -8,7 +8,6 @@
 
 #include <fcntl.h>
 #include <spdlog/spdlog.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 namespace voqcal {
@@ -45,6 +44,15 @@ void SyncFolderOf(const std::filesystem::path& path) {
   if (descriptor < 0) return;
   fsync(descriptor);
   close(descriptor);
+}
+
+// As fcntl takes it. Of the open file, not of the process (F_OFD_...): two writers of one process
+// keep each other out, and to ask takes no lock.
+struct flock WholeFile(short type) {
+  struct flock lock {};
+  lock.l_type = type;
+  lock.l_whence = SEEK_SET;
+  return lock;
 }
 
 }  // namespace
@@ -161,16 +169,19 @@ std::optional<LogEvent> LogReader::Next() {
 void RequireNotBeingWritten(const std::filesystem::path& path) {
   const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return;
-  const bool is_free = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  struct flock lock = WholeFile(F_RDLCK);
+  const bool is_asked = fcntl(descriptor, F_OFD_GETLK, &lock) == 0;
   close(descriptor);
-  if (!is_free) throw std::runtime_error(path.string() + ": is being written by another process");
+  if (is_asked && lock.l_type != F_UNLCK)
+    throw std::runtime_error(path.string() + ": is being written by another process");
 }
 
 LogWriter::LogWriter(const std::filesystem::path& path) : path_(path) {
   descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) Fail("open");
   try {
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    struct flock lock = WholeFile(F_WRLCK);
+    if (fcntl(descriptor_, F_OFD_SETLK, &lock) != 0) {
       throw std::runtime_error(path.string() + ": is being written by another process");
     }
     CutHalfWrittenEvent();

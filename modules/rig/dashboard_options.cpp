@@ -2,6 +2,8 @@
 
 #include <arpa/inet.h>
 
+#include "core/problems.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -14,18 +16,15 @@ bool IsAddress(const std::string& text) {
 }  // namespace
 
 std::vector<std::string> DashboardOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto demand = [&problems](bool is_met, const std::string& rule, const auto& value) {
-    if (!is_met) problems.push_back(rule + ", is " + std::to_string(value));
-  };
-  if (!IsAddress(address))
-    problems.push_back("address must be an IP address, is '" + address + "'");
-  demand(port >= 0 && port <= 65535, "port must be 0 to 65535", port);
-  demand(image_rate_hz > 0, "image_rate_hz must be positive", image_rate_hz);
-  demand(cloud_rate_hz > 0, "cloud_rate_hz must be positive", cloud_rate_hz);
-  demand(max_image_width_px >= 64, "max_image_width_px must be at least 64", max_image_width_px);
-  demand(max_cloud_points >= 1, "max_cloud_points must be positive", max_cloud_points);
-  return problems;
+  ProblemList problems;
+  problems.Require(IsAddress(address), "address must be an IP address", "'" + address + "'");
+  problems.Require(port >= 0 && port <= 65535, "port must be 0 to 65535", port);
+  problems.RequirePositive("image_rate_hz", image_rate_hz);
+  problems.RequirePositive("cloud_rate_hz", cloud_rate_hz);
+  problems.Require(
+      max_image_width_px >= 64, "max_image_width_px must be at least 64", max_image_width_px);
+  problems.Require(max_cloud_points >= 1, "max_cloud_points must be positive", max_cloud_points);
+  return problems.lines();
 }
 
 void ReadDashboard(YamlSection* top, DashboardOptions* options) {

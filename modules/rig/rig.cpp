@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 
+#include "core/problems.hpp"
 #include "rig/atomic_file.hpp"
 #include "rig/rig_sections.hpp"
 #include "rig/sha256.hpp"
@@ -9,18 +10,16 @@
 namespace voqcal {
 
 std::vector<std::string> DriverOptions::Problems() const {
-  std::vector<std::string> problems;
-  if (!(rate_hz > 0)) problems.push_back("rate_hz must be positive, is " + std::to_string(rate_hz));
-  if (jpeg_quality < 1 || jpeg_quality > 100) {
-    problems.push_back("jpeg_quality must be 1 to 100, is " + std::to_string(jpeg_quality));
-  }
+  ProblemList problems;
+  problems.RequirePositive("rate_hz", rate_hz);
+  problems.Require(
+      jpeg_quality >= 1 && jpeg_quality <= 100, "jpeg_quality must be 1 to 100", jpeg_quality);
   const int num_named = !device.empty() + !pipeline.empty() + !url.empty();
-  if (source == DriverSource::kVideo && num_named != 1) {
-    problems.push_back("source video needs one of device, pipeline and url, has " +
-                       std::to_string(num_named));
-  }
-  if (!(retry_s > 0)) problems.push_back("retry_s must be positive, is " + std::to_string(retry_s));
-  return problems;
+  problems.Require(source != DriverSource::kVideo || num_named == 1,
+                   "source video needs one of device, pipeline and url: their number",
+                   num_named);
+  problems.RequirePositive("retry_s", retry_s);
+  return problems.lines();
 }
 
 int LidarSensorOptions::Port() const {
@@ -31,15 +30,14 @@ int LidarSensorOptions::Port() const {
 }
 
 std::vector<std::string> LidarSensorOptions::Problems() const {
-  std::vector<std::string> problems = packets.Problems();
+  ProblemList problems;
+  problems.Add(packets.Problems());
   in_addr parsed{};
-  if (inet_pton(AF_INET, address.c_str(), &parsed) != 1) {
-    problems.push_back("address must be an IPv4 address of this host, is \"" + address + '"');
-  }
-  if (port < 0 || port > 65535) {
-    problems.push_back("port must be 0 to 65535, is " + std::to_string(port));
-  }
-  return problems;
+  problems.Require(inet_pton(AF_INET, address.c_str(), &parsed) == 1,
+                   "address must be an IPv4 address of this host",
+                   '"' + address + '"');
+  problems.Require(port >= 0 && port <= 65535, "port must be 0 to 65535", port);
+  return problems.lines();
 }
 
 Rig LoadRig(const std::filesystem::path& path) {

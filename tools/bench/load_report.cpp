@@ -7,15 +7,10 @@
 
 #include <unistd.h>
 
+#include "core/format.hpp"
+
 namespace voqcal {
 namespace {
-
-template <typename... Values>
-std::string Format(const char* format, Values... values) {
-  char text[300];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
 
 double Quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;

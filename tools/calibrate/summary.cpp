@@ -2,22 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+
+#include "core/format.hpp"
 
 namespace voqcal {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
-
-[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...) {
-  char text[512];
-  va_list args;
-  va_start(args, format);
-  std::vsnprintf(text, sizeof(text), format, args);
-  va_end(args);
-  return text;
-}
 
 std::string TransformLines(const CalibrationResult& result) {
   const Eigen::Vector3d& t = result.T_camera_lidar.translation();

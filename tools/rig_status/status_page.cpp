@@ -1,9 +1,9 @@
 #include "rig_status/status_page.hpp"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <utility>
+
+#include "core/format.hpp"
 
 namespace voqcal {
 namespace {
@@ -20,15 +20,6 @@ bool StartsWith(const std::string& text, const std::string& prefix) {
 /// A module that said so is gone for good, not silent.
 bool HasEnded(const module_status_t& status) {
   return status.state == "done" || status.state == "stopped";
-}
-
-[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...) {
-  char line[256];
-  std::va_list values;
-  va_start(values, format);
-  std::vsnprintf(line, sizeof line, format, values);
-  va_end(values);
-  return line;
 }
 
 double SecondsBetween(StatusPage::Time from, StatusPage::Time to) {

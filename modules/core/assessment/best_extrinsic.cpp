@@ -4,14 +4,10 @@
 #include <stdexcept>
 
 #include "core/estimation/pose_variety.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
-
-void RequireUsable(const RefinerOptions& options) {
-  const std::vector<std::string> problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("RefinerOptions: " + problems.front());
-}
 
 bool MostHavePoints(const std::vector<const BoardSample*>& samples) {
   constexpr std::size_t kMinPoints = 30;  // a plane needs some
@@ -118,9 +114,10 @@ std::optional<RefineMethod> RefineMethodFromString(const std::string& name) {
 }
 
 std::vector<std::string> RefinerOptions::Problems() const {
-  std::vector<std::string> problems = reprojection.Problems();
-  for (const std::string& problem : likelihood.Problems()) problems.push_back(problem);
-  return problems;
+  ProblemList problems;
+  problems.Add(reprojection.Problems());
+  problems.Add(likelihood.Problems());
+  return problems.lines();
 }
 
 double MethodTrial::ErrorMm() const {
@@ -159,7 +156,7 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
                          const CameraModel& camera,
                          const AveragedExtrinsic& average,
                          const RefinerOptions& options) {
-  RequireUsable(options);
+  RequireUsable("RefinerOptions", options.Problems());
   BestExtrinsic best;
   best.T_camera_lidar = average.T_camera_lidar;
   best.problem = VarietyProblem(samples);

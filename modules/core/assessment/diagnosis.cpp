@@ -2,29 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <sstream>
-#include <stdexcept>
 
 #include "core/assessment/fault_model.hpp"
 #include "core/assessment/nested_models.hpp"
+#include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kLeastForModels = 5;  // of 6 residuals each, for 6 + 2 parameters
-
-[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...) {
-  char text[512];
-  va_list args;
-  va_start(args, format);
-  std::vsnprintf(text, sizeof(text), format, args);
-  va_end(args);
-  return text;
-}
 
 double Median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -179,25 +168,19 @@ void Rank(std::vector<Finding>* findings) {
 }  // namespace
 
 std::vector<std::string> DiagnosisOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require_positive = [&problems](const char* name, double value) {
-    if (value > 0) return;
-    std::ostringstream text;
-    text << name << " must be positive, is " << value;
-    problems.push_back(text.str());
-  };
-  require_positive("min_log_likelihood_gain", min_log_likelihood_gain);
-  require_positive("min_held_out_gain", min_held_out_gain);
-  require_positive("min_focal_scale", min_focal_scale);
-  require_positive("min_principal_point_px", min_principal_point_px);
-  require_positive("min_square_scale", min_square_scale);
-  require_positive("min_range_offset_m", min_range_offset_m);
-  require_positive("min_edge_error_m", min_edge_error_m);
-  require_positive("max_outlier_factor", max_outlier_factor);
-  require_positive("min_samples", min_samples);
-  require_positive("min_tilt_spread_rad", min_tilt_spread_rad);
-  require_positive("min_view_spread_rad", min_view_spread_rad);
-  return problems;
+  ProblemList problems;
+  problems.RequirePositive("min_log_likelihood_gain", min_log_likelihood_gain);
+  problems.RequirePositive("min_held_out_gain", min_held_out_gain);
+  problems.RequirePositive("min_focal_scale", min_focal_scale);
+  problems.RequirePositive("min_principal_point_px", min_principal_point_px);
+  problems.RequirePositive("min_square_scale", min_square_scale);
+  problems.RequirePositive("min_range_offset_m", min_range_offset_m);
+  problems.RequirePositive("min_edge_error_m", min_edge_error_m);
+  problems.RequirePositive("max_outlier_factor", max_outlier_factor);
+  problems.RequirePositive("min_samples", min_samples);
+  problems.RequirePositive("min_tilt_spread_rad", min_tilt_spread_rad);
+  problems.RequirePositive("min_view_spread_rad", min_view_spread_rad);
+  return problems.lines();
 }
 
 Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
@@ -206,8 +189,7 @@ Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
                    const CameraModel& camera,
                    const Eigen::Isometry3d& T_camera_lidar,
                    const DiagnosisOptions& options) {
-  const auto problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("DiagnosisOptions: " + problems.front());
+  RequireUsable("DiagnosisOptions", options.Problems());
   Diagnosis diagnosis;
   std::vector<FaultEquation> equations = MakeFaultEquations(samples, board, camera, T_camera_lidar);
   SetOutliersAside(&equations, options, &diagnosis);

@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include <opencv2/imgproc.hpp>
+
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -182,20 +183,15 @@ cv::Mat RankOf(const cv::Mat& magnitude, const cv::Mat& mask) {
 }  // namespace
 
 std::vector<std::string> SceneViewOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  require(min_jump_m > 0, "min_jump_m must be positive", min_jump_m);
-  require(max_step_rad > 0, "max_step_rad must be positive", max_step_rad);
-  require(board_margin_m >= 0, "board_margin_m must not be negative", board_margin_m);
-  require(min_range_m >= 0, "min_range_m must not be negative", min_range_m);
-  require(max_image_width_px >= 16, "max_image_width_px must be at least 16", max_image_width_px);
-  require(image_blur_px > 0, "image_blur_px must be positive", image_blur_px);
-  return problems;
+  ProblemList problems;
+  problems.RequirePositive("min_jump_m", min_jump_m);
+  problems.RequirePositive("max_step_rad", max_step_rad);
+  problems.Require(board_margin_m >= 0, "board_margin_m must not be negative", board_margin_m);
+  problems.Require(min_range_m >= 0, "min_range_m must not be negative", min_range_m);
+  problems.Require(
+      max_image_width_px >= 16, "max_image_width_px must be at least 16", max_image_width_px);
+  problems.RequirePositive("image_blur_px", image_blur_px);
+  return problems.lines();
 }
 
 SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
@@ -204,8 +200,7 @@ SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
                         const BoardSpec& board,
                         const CameraModel& camera,
                         const SceneViewOptions& options) {
-  const auto problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("SceneViewOptions: " + problems.front());
+  RequireUsable("SceneViewOptions", options.Problems());
   if (image.cols != camera.width_px || image.rows != camera.height_px || image.depth() != CV_8U) {
     throw std::invalid_argument("MakeSceneView: the image is not of the camera's size");
   }

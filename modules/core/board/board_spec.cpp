@@ -4,17 +4,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <sstream>
+
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
-
-template <typename Value>
-std::string Problem(const char* rule, Value value) {
-  std::ostringstream text;
-  text << rule << ", is " << value;
-  return text.str();
-}
 
 // Of a dictionary: the number that its name ends in, but for ArUco's own and AprilTag's (OpenCV's
 // dictionary.hpp).
@@ -42,39 +36,38 @@ const std::vector<std::string>& CharucoDictionaries() {
 }
 
 std::vector<std::string> BoardSpec::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, auto value) {
-    if (!is_met) problems.push_back(Problem(rule, value));
-  };
-  require(width_m > 0, "width_m must be positive", width_m);
-  require(height_m > 0, "height_m must be positive", height_m);
-  require(square_m > 0, "square_m must be positive", square_m);
-  require(num_corners_x >= 3, "num_corners_x must be at least 3", num_corners_x);
-  require(num_corners_y >= 3, "num_corners_y must be at least 3", num_corners_y);
-  if (!problems.empty()) return problems;
+  ProblemList problems;
+  problems.RequirePositive("width_m", width_m);
+  problems.RequirePositive("height_m", height_m);
+  problems.RequirePositive("square_m", square_m);
+  problems.Require(num_corners_x >= 3, "num_corners_x must be at least 3", num_corners_x);
+  problems.Require(num_corners_y >= 3, "num_corners_y must be at least 3", num_corners_y);
+  if (!problems.empty()) return problems.lines();
   // Both detectors tell half-turns apart at most: a square's quarter-turns would go unnoticed.
-  require(std::abs(width_m - height_m) >= 0.05 * std::max(width_m, height_m),
-          "width_m and height_m must differ by at least 5 %: width_m",
-          width_m);
+  problems.Require(std::abs(width_m - height_m) >= 0.05 * std::max(width_m, height_m),
+                   "width_m and height_m must differ by at least 5 %: width_m",
+                   width_m);
   // The pattern has one square more than inner corners on each axis; a partial square may be
   // missing.
-  require((num_corners_x - 1) * square_m < width_m,
-          "the inner corners along x must fit into width_m: (num_corners_x - 1) * square_m",
-          (num_corners_x - 1) * square_m);
-  require((num_corners_y - 1) * square_m < height_m,
-          "the inner corners along y must fit into height_m: (num_corners_y - 1) * square_m",
-          (num_corners_y - 1) * square_m);
-  if (pattern != BoardPattern::kCharuco) return problems;
+  problems.Require(
+      (num_corners_x - 1) * square_m < width_m,
+      "the inner corners along x must fit into width_m: (num_corners_x - 1) * square_m",
+      (num_corners_x - 1) * square_m);
+  problems.Require(
+      (num_corners_y - 1) * square_m < height_m,
+      "the inner corners along y must fit into height_m: (num_corners_y - 1) * square_m",
+      (num_corners_y - 1) * square_m);
+  if (pattern != BoardPattern::kCharuco) return problems.lines();
   const auto& names = CharucoDictionaries();
-  require(std::find(names.begin(), names.end(), dictionary) != names.end(),
-          "dictionary must be a name such as 5x5_100 or apriltag_36h11",
-          dictionary);
-  require(
+  problems.Require(std::find(names.begin(), names.end(), dictionary) != names.end(),
+                   "dictionary must be a name such as 5x5_100 or apriltag_36h11",
+                   dictionary);
+  problems.Require(
       marker_m > 0 && marker_m < square_m, "marker_m must be above 0 and below square_m", marker_m);
-  require((num_corners_x + 1) * (num_corners_y + 1) / 2 <= NumMarkers(dictionary),
-          "the dictionary must have a marker for each white square: their number",
-          (num_corners_x + 1) * (num_corners_y + 1) / 2);
-  return problems;
+  problems.Require((num_corners_x + 1) * (num_corners_y + 1) / 2 <= NumMarkers(dictionary),
+                   "the dictionary must have a marker for each white square: their number",
+                   (num_corners_x + 1) * (num_corners_y + 1) / 2);
+  return problems.lines();
 }
 
 std::array<Eigen::Vector3d, 4> BoardSpec::OutlineBoardM() const {

@@ -12,16 +12,10 @@
 #include "core/board/charuco_corners.hpp"
 #include "core/board/chessboard_corners.hpp"
 #include "core/board/planar_pose.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
-
-void RequireUsable(const char* what, const std::vector<std::string>& problems) {
-  if (problems.empty()) return;
-  std::string text = std::string("DetectCameraBoard: ") + what;
-  for (std::size_t i = 0; i < problems.size(); ++i) text += (i == 0 ? ": " : "; ") + problems[i];
-  throw std::invalid_argument(text);
-}
 
 void RequireImage(const cv::Mat& image, const CameraModel& camera) {
   std::ostringstream text;
@@ -133,40 +127,35 @@ std::vector<SightingWarning> WarningsOf(const PlanarPose& fit,
 }  // namespace
 
 std::vector<std::string> CameraBoardOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
+  ProblemList problems;
   const auto is_positive = [](double value) { return value > 0 && std::isfinite(value); };
   const auto is_share = [](double value) { return value >= 0 && value <= 1; };
-  require(is_positive(max_reprojection_rms_px),
-          "max_reprojection_rms_px must be positive and finite",
-          max_reprojection_rms_px);
-  require(is_positive(max_edge_width_rad),
-          "max_edge_width_rad must be positive and finite",
-          max_edge_width_rad);
-  require(is_positive(max_edge_width_squares),
-          "max_edge_width_squares must be positive and finite",
-          max_edge_width_squares);
-  require(min_square_px >= 0, "min_square_px must not be negative", min_square_px);
-  require(is_share(min_contrast), "min_contrast must be 0 to 1", min_contrast);
-  require(is_share(max_outside_share), "max_outside_share must be 0 to 1", max_outside_share);
-  require(is_share(max_mirrored_probability),
-          "max_mirrored_probability must be 0 to 1",
-          max_mirrored_probability);
-  return problems;
+  problems.Require(is_positive(max_reprojection_rms_px),
+                   "max_reprojection_rms_px must be positive and finite",
+                   max_reprojection_rms_px);
+  problems.Require(is_positive(max_edge_width_rad),
+                   "max_edge_width_rad must be positive and finite",
+                   max_edge_width_rad);
+  problems.Require(is_positive(max_edge_width_squares),
+                   "max_edge_width_squares must be positive and finite",
+                   max_edge_width_squares);
+  problems.Require(min_square_px >= 0, "min_square_px must not be negative", min_square_px);
+  problems.Require(is_share(min_contrast), "min_contrast must be 0 to 1", min_contrast);
+  problems.Require(
+      is_share(max_outside_share), "max_outside_share must be 0 to 1", max_outside_share);
+  problems.Require(is_share(max_mirrored_probability),
+                   "max_mirrored_probability must be 0 to 1",
+                   max_mirrored_probability);
+  return problems.lines();
 }
 
 Expected<CameraBoard, CameraBoardMiss> DetectCameraBoard(const cv::Mat& image,
                                                          const CameraModel& camera,
                                                          const BoardSpec& board,
                                                          const CameraBoardOptions& options) {
-  RequireUsable("camera", camera.Problems());
-  RequireUsable("board", board.Problems());
-  RequireUsable("options", options.Problems());
+  RequireUsable("DetectCameraBoard: camera", camera.Problems());
+  RequireUsable("DetectCameraBoard: board", board.Problems());
+  RequireUsable("DetectCameraBoard: options", options.Problems());
   RequireImage(image, camera);
 
   const cv::Mat grey = Grey(image);

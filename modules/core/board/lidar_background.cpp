@@ -4,10 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 
 #include "core/board/lidar_beams.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -41,24 +40,17 @@ void ForEachReturn(const PointCloud& cloud_lidar_m, Visit visit) {
 }  // namespace
 
 std::vector<std::string> LidarBackgroundOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, auto value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  require(memory_sweeps > 0, "memory_sweeps must be positive", memory_sweeps);
-  require(min_step_m > 0, "min_step_m must be positive", min_step_m);
-  return problems;
+  ProblemList problems;
+  problems.RequirePositive("memory_sweeps", memory_sweeps);
+  problems.RequirePositive("min_step_m", min_step_m);
+  return problems.lines();
 }
 
 LidarBackground::LidarBackground(const LidarBackgroundOptions& options)
     : options_(options),
       cells_(kNumAzimuths * kNumElevations),
       nearest_m_(cells_.size(), kNothing) {
-  const std::vector<std::string> problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("LidarBackground: " + problems.front());
+  RequireUsable("LidarBackground", options.Problems());
 }
 
 double LidarBackground::ShareThatCame(const PointCloud& points_lidar_m) const {

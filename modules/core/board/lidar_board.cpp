@@ -3,25 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <sstream>
-#include <stdexcept>
 
 #include "core/board/board_candidate.hpp"
 #include "core/board/lidar_beams.hpp"
 #include "core/board/planar_patches.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
 
 constexpr double kPartM = 0.1;          // so near its plane a patch is of the same board
 constexpr std::size_t kMinPoints = 30;  // a board with fewer returns cannot be measured
-
-void RequireUsable(const char* what, const std::vector<std::string>& problems) {
-  if (problems.empty()) return;
-  std::string text = std::string("DetectLidarBoard: ") + what;
-  for (const std::string& problem : problems) text += "; " + problem;
-  throw std::invalid_argument(text);
-}
 
 bool IsSearched(const Eigen::Vector3f& position_m, const LidarBoardOptions& options) {
   if (!IsReturn(position_m, options.min_range_m)) return false;
@@ -101,49 +93,35 @@ std::vector<LidarBoard> Ranked(std::vector<LidarBoard> found, const BoardSpec& b
 }  // namespace
 
 std::vector<std::string> LidarBeamOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  require(spill_m >= 0, "spill_m must not be negative", spill_m);
-  require(spill_sigma_m > 0, "spill_sigma_m must be positive", spill_sigma_m);
-  require(blur_m > 0, "blur_m must be positive", blur_m);
-  require(blur_per_m >= 0, "blur_per_m must not be negative", blur_per_m);
-  require(hit_band_m > 0, "hit_band_m must be positive", hit_band_m);
-  require(line_sigma_m >= 0, "line_sigma_m must not be negative", line_sigma_m);
-  return problems;
+  ProblemList problems;
+  problems.Require(spill_m >= 0, "spill_m must not be negative", spill_m);
+  problems.RequirePositive("spill_sigma_m", spill_sigma_m);
+  problems.RequirePositive("blur_m", blur_m);
+  problems.Require(blur_per_m >= 0, "blur_per_m must not be negative", blur_per_m);
+  problems.RequirePositive("hit_band_m", hit_band_m);
+  problems.Require(line_sigma_m >= 0, "line_sigma_m must not be negative", line_sigma_m);
+  return problems.lines();
 }
 
 std::vector<std::string> LidarBoardOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const std::string& rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  require(min_range_m >= 0, "min_range_m must not be negative", min_range_m);
-  require(max_range_m > min_range_m && std::isfinite(max_range_m),
-          "max_range_m must be finite and above min_range_m",
-          max_range_m);
-  require(max_corner_sigma_m > 0, "max_corner_sigma_m must be positive", max_corner_sigma_m);
-  require(max_bend_m > 0, "max_bend_m must be positive", max_bend_m);
-  require(thickness_m >= 0, "thickness_m must not be negative", thickness_m);
-  require(thickness_sigma_m > 0, "thickness_sigma_m must be positive", thickness_sigma_m);
-  for (const std::string& problem : beam.Problems()) problems.push_back("beam: " + problem);
-  for (const std::string& problem : background.Problems()) {
-    problems.push_back("background: " + problem);
-  }
-  if (!region_of_interest) return problems;
+  ProblemList problems;
+  problems.Require(min_range_m >= 0, "min_range_m must not be negative", min_range_m);
+  problems.Require(max_range_m > min_range_m && std::isfinite(max_range_m),
+                   "max_range_m must be finite and above min_range_m",
+                   max_range_m);
+  problems.RequirePositive("max_corner_sigma_m", max_corner_sigma_m);
+  problems.RequirePositive("max_bend_m", max_bend_m);
+  problems.Require(thickness_m >= 0, "thickness_m must not be negative", thickness_m);
+  problems.RequirePositive("thickness_sigma_m", thickness_sigma_m);
+  problems.Add(beam.Problems(), "beam: ");
+  problems.Add(background.Problems(), "background: ");
+  if (!region_of_interest) return problems.lines();
   for (int axis = 0; axis < 3; ++axis) {
-    require(region_of_interest->max_lidar_m[axis] > region_of_interest->min_lidar_m[axis],
-            std::string("region_of_interest max must be above min on axis ") + "xyz"[axis],
-            region_of_interest -> max_lidar_m[axis]);
+    problems.Require(region_of_interest->max_lidar_m[axis] > region_of_interest->min_lidar_m[axis],
+                     std::string("region_of_interest max must be above min on axis ") + "xyz"[axis],
+                     region_of_interest -> max_lidar_m[axis]);
   }
-  return problems;
+  return problems.lines();
 }
 
 Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
@@ -153,8 +131,8 @@ Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
     const LidarBackground* background) {
   constexpr std::size_t kMaxPatches = 12;  // bounds the time; a room has two or three
   constexpr double kAsGood = 0.8;          // share of the best likelihood that a rival may reach
-  RequireUsable("board", board.Problems());
-  RequireUsable("options", options.Problems());
+  RequireUsable("DetectLidarBoard: board", board.Problems());
+  RequireUsable("DetectLidarBoard: options", options.Problems());
 
   const std::vector<Eigen::Vector3d> points_m = SearchedPoints(cloud_lidar_m, options);
   if (points_m.size() < kMinPoints) return NoLidarBoard{LidarBoardMiss::kTooFewPoints, {}};

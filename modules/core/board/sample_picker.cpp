@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 #include <utility>
 
 #include "core/board/average_sightings.hpp"
+#include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -17,21 +17,14 @@ namespace {
 // A stream whose partner is silent is judged without it beyond this many frames: memory is bounded.
 constexpr std::size_t kMaxWaiting = 600;
 
-std::string Format(const char* before, double value, const char* after) {
-  std::ostringstream text;
-  text.setf(std::ios::fixed);
-  text.precision(std::abs(value) < 10 ? 3 : 1);
-  text << before << value << after;
-  return text.str();
-}
-
 // Why the measured edges cannot be this board's; empty if they can.
 std::string EdgeProblem(const LidarBoard& lidar, const BoardSpec& board, double max_edge_error_m) {
   const auto true_lengths_m = board.EdgeLengthsM();
   for (std::size_t i = 0; i < 4; ++i) {
     if (std::abs(lidar.edge_lengths_m[i] - true_lengths_m[i]) <= max_edge_error_m) continue;
-    return Format("the lidar measures an edge of ", true_lengths_m[i], " m as ") +
-           Format("", lidar.edge_lengths_m[i], " m");
+    return Format("the lidar measures an edge of %.3f m as %.3f m",
+                  true_lengths_m[i],
+                  lidar.edge_lengths_m[i]);
   }
   return {};
 }
@@ -93,22 +86,19 @@ double LargestCornerMotionPx(const CameraBoard& a, const CameraBoard& b) {
 }  // namespace
 
 std::vector<std::string> SamplePickerOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  require(max_pair_offset_s >= 0, "max_pair_offset_s must not be negative", max_pair_offset_s);
-  require(num_still_frames >= 1, "num_still_frames must be at least 1", num_still_frames);
-  require(max_still_motion_m > 0, "max_still_motion_m must be positive", max_still_motion_m);
-  require(max_still_motion_px > 0, "max_still_motion_px must be positive", max_still_motion_px);
-  require(min_new_distance_m >= 0, "min_new_distance_m must not be negative", min_new_distance_m);
-  require(min_new_angle_rad >= 0, "min_new_angle_rad must not be negative", min_new_angle_rad);
-  require(max_edge_error_m > 0, "max_edge_error_m must be positive", max_edge_error_m);
-  require(max_candidates >= 1, "max_candidates must be at least 1", max_candidates);
-  return problems;
+  ProblemList problems;
+  problems.Require(
+      max_pair_offset_s >= 0, "max_pair_offset_s must not be negative", max_pair_offset_s);
+  problems.Require(num_still_frames >= 1, "num_still_frames must be at least 1", num_still_frames);
+  problems.RequirePositive("max_still_motion_m", max_still_motion_m);
+  problems.RequirePositive("max_still_motion_px", max_still_motion_px);
+  problems.Require(
+      min_new_distance_m >= 0, "min_new_distance_m must not be negative", min_new_distance_m);
+  problems.Require(
+      min_new_angle_rad >= 0, "min_new_angle_rad must not be negative", min_new_angle_rad);
+  problems.RequirePositive("max_edge_error_m", max_edge_error_m);
+  problems.Require(max_candidates >= 1, "max_candidates must be at least 1", max_candidates);
+  return problems.lines();
 }
 
 SamplePicker::SamplePicker(const BoardSpec& board, const SamplePickerOptions& options)
@@ -117,8 +107,7 @@ SamplePicker::SamplePicker(const BoardSpec& board, const SamplePickerOptions& op
       max_pair_offset_us_(std::llround(options.max_pair_offset_s * 1e6)),
       newest_lidar_utime_(std::numeric_limits<std::int64_t>::min()),
       newest_camera_utime_(std::numeric_limits<std::int64_t>::min()) {
-  const auto problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("SamplePickerOptions: " + problems.front());
+  RequireUsable("SamplePickerOptions", options.Problems());
 }
 
 std::vector<PickerDecision> SamplePicker::Add(const LidarSighting& sighting) {

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -179,28 +180,22 @@ Eigen::Vector3d RayFromPlane(LensModel lens, const Eigen::Vector2d& q) {
 }  // namespace
 
 std::vector<std::string> CameraModel::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const std::string& rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  require(width_px > 0, "width_px must be positive", width_px);
-  require(height_px > 0, "height_px must be positive", height_px);
-  require(fx_px > 0 && std::isfinite(fx_px), "fx_px must be positive and finite", fx_px);
-  require(fy_px > 0 && std::isfinite(fy_px), "fy_px must be positive and finite", fy_px);
-  require(std::isfinite(cx_px), "cx_px must be finite", cx_px);
-  require(std::isfinite(cy_px), "cy_px must be finite", cy_px);
+  ProblemList problems;
+  problems.RequirePositive("width_px", width_px);
+  problems.RequirePositive("height_px", height_px);
+  problems.Require(fx_px > 0 && std::isfinite(fx_px), "fx_px must be positive and finite", fx_px);
+  problems.Require(fy_px > 0 && std::isfinite(fy_px), "fy_px must be positive and finite", fy_px);
+  problems.Require(std::isfinite(cx_px), "cx_px must be finite", cx_px);
+  problems.Require(std::isfinite(cy_px), "cy_px must be finite", cy_px);
   for (std::size_t i = 0; i < distortion.size(); ++i) {
     const std::string name = "distortion[" + std::to_string(i) + "]";
-    require(std::isfinite(distortion[i]), name + " must be finite", distortion[i]);
-    require(static_cast<int>(i) < NumDistortion(lens) || distortion[i] == 0.0,
-            name + " must be zero, as " + ToString(lens) + " has " +
-                std::to_string(NumDistortion(lens)) + " coefficients",
-            distortion[i]);
+    problems.Require(std::isfinite(distortion[i]), name + " must be finite", distortion[i]);
+    problems.Require(static_cast<int>(i) < NumDistortion(lens) || distortion[i] == 0.0,
+                     name + " must be zero, as " + ToString(lens) + " has " +
+                         std::to_string(NumDistortion(lens)) + " coefficients",
+                     distortion[i]);
   }
-  return problems;
+  return problems.lines();
 }
 
 bool CameraModel::IsInFront(const Eigen::Vector3d& point_camera_m) const {

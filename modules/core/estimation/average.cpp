@@ -3,7 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
+
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -60,19 +61,14 @@ std::string ReasonToDrop(const Vector6d& departure, const Vector6d& deviation, d
 }  // namespace
 
 std::vector<std::string> AverageOptions::Problems() const {
-  std::vector<std::string> problems;
-  if (!(max_z_score > 0.0)) {
-    std::ostringstream text;
-    text << "max_z_score must be positive, is " << max_z_score;
-    problems.push_back(text.str());
-  }
-  return problems;
+  ProblemList problems;
+  problems.RequirePositive("max_z_score", max_z_score);
+  return problems.lines();
 }
 
 AveragedExtrinsic AverageExtrinsics(const std::vector<SetExtrinsic>& sets,
                                     const AverageOptions& options) {
-  const std::vector<std::string> problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("AverageOptions: " + problems.front());
+  RequireUsable("AverageOptions", options.Problems());
 
   AveragedExtrinsic average;
   average.is_kept.assign(sets.size(), false);

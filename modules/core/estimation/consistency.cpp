@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/geometry/rigid.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -171,22 +172,15 @@ std::string ReasonFor(std::size_t candidate,
 }  // namespace
 
 std::vector<std::string> ConsistencyOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require_positive = [&problems](const char* name, double value) {
-    if (value > 0.0) return;
-    std::ostringstream text;
-    text << name << " must be positive, is " << value;
-    problems.push_back(text.str());
-  };
-  require_positive("max_distance_m", max_distance_m);
-  require_positive("max_angle_rad", max_angle_rad);
-  return problems;
+  ProblemList problems;
+  problems.RequirePositive("max_distance_m", max_distance_m);
+  problems.RequirePositive("max_angle_rad", max_angle_rad);
+  return problems.lines();
 }
 
 Consistency FindConsistent(const std::vector<BoardSample>& samples,
                            const ConsistencyOptions& options) {
-  const std::vector<std::string> problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("ConsistencyOptions: " + problems.front());
+  RequireUsable("ConsistencyOptions", options.Problems());
 
   Consistency result;
   constexpr std::size_t kLeastToJudge = 3;  // of two that disagree, neither is known to be wrong

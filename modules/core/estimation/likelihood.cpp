@@ -2,20 +2,15 @@
 
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 
 #include "core/estimation/likelihood_search.hpp"
 #include "core/estimation/likelihood_uncertainty.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
 
 constexpr std::size_t kMinSamples = 3;
-
-void RequireUsable(const LikelihoodOptions& options) {
-  const std::vector<std::string> problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("LikelihoodOptions: " + problems.front());
-}
 
 // Radians or metres.
 constexpr double kSettled = 1e-9;
@@ -72,30 +67,25 @@ std::vector<LikelihoodPose> PosesOf(const std::vector<const BoardSample*>& sampl
 }  // namespace
 
 std::vector<std::string> LikelihoodOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  require(common_prior_m > 0.0, "common_prior_m must be positive", common_prior_m);
-  require(dark_step_prior_m > 0.0, "dark_step_prior_m must be positive", dark_step_prior_m);
-  require(ring_prior_m > 0.0, "ring_prior_m must be positive", ring_prior_m);
-  require(
-      outline_lift_prior_m > 0.0, "outline_lift_prior_m must be positive", outline_lift_prior_m);
-  require(outline_rise_prior > 0.0, "outline_rise_prior must be positive", outline_rise_prior);
-  require(outline_error_m > 0.0, "outline_error_m must be positive", outline_error_m);
-  require(outline_error_rad > 0.0, "outline_error_rad must be positive", outline_error_rad);
-  require(camera_error_m > 0.0, "camera_error_m must be positive", camera_error_m);
-  require(camera_error_rad > 0.0, "camera_error_rad must be positive", camera_error_rad);
-  require(focal_length_error >= 0.0, "focal_length_error must not be negative", focal_length_error);
-  require(principal_point_error_px >= 0.0,
-          "principal_point_error_px must not be negative",
-          principal_point_error_px);
-  require(board_size_error >= 0.0, "board_size_error must not be negative", board_size_error);
-  require(max_iterations > 0, "max_iterations must be positive", max_iterations);
-  return problems;
+  ProblemList problems;
+  problems.RequirePositive("common_prior_m", common_prior_m);
+  problems.RequirePositive("dark_step_prior_m", dark_step_prior_m);
+  problems.RequirePositive("ring_prior_m", ring_prior_m);
+  problems.RequirePositive("outline_lift_prior_m", outline_lift_prior_m);
+  problems.RequirePositive("outline_rise_prior", outline_rise_prior);
+  problems.RequirePositive("outline_error_m", outline_error_m);
+  problems.RequirePositive("outline_error_rad", outline_error_rad);
+  problems.RequirePositive("camera_error_m", camera_error_m);
+  problems.RequirePositive("camera_error_rad", camera_error_rad);
+  problems.Require(
+      focal_length_error >= 0.0, "focal_length_error must not be negative", focal_length_error);
+  problems.Require(principal_point_error_px >= 0.0,
+                   "principal_point_error_px must not be negative",
+                   principal_point_error_px);
+  problems.Require(
+      board_size_error >= 0.0, "board_size_error must not be negative", board_size_error);
+  problems.RequirePositive("max_iterations", max_iterations);
+  return problems.lines();
 }
 
 std::string LikelihoodExtrinsic::Summary() const {
@@ -117,7 +107,7 @@ LikelihoodExtrinsic RefineByLikelihood(const std::vector<const BoardSample*>& sa
                                        const LikelihoodOptions& options) {
   constexpr int kNoiseRounds = 4;    // levels settle to a percent in three...
   constexpr int kStepsPerRound = 4;  // ...and do not need the minimum to the last digit
-  RequireUsable(options);
+  RequireUsable("LikelihoodOptions", options.Problems());
   LikelihoodExtrinsic refined;
   refined.T_camera_lidar = T_camera_lidar_start;
   refined.status = RefineStatus::kDegenerate;
@@ -153,7 +143,7 @@ LikelihoodExtrinsic RefineByLikelihood(const std::vector<const BoardSample*>& sa
 LikelihoodExtrinsic RefineNearby(const std::vector<const BoardSample*>& samples,
                                  const LikelihoodExtrinsic& nearby,
                                  const LikelihoodOptions& options) {
-  RequireUsable(options);
+  RequireUsable("LikelihoodOptions", options.Problems());
   LikelihoodExtrinsic refined = nearby;
   refined.status = RefineStatus::kDegenerate;
   if (samples.size() < kMinSamples) return refined;

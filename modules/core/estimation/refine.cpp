@@ -12,16 +12,12 @@
 #include <ceres/solver.h>
 
 #include "core/estimation/refine_terms.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
 
 constexpr std::size_t kMinSamples = 3;
-
-void RequireUsable(const RefineOptions& options) {
-  const std::vector<std::string> problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("RefineOptions: " + problems.front());
-}
 
 // Every point that a term projects lies where the lens model is defined.
 bool IsVisible(const BoardPose& pose_lidar,
@@ -197,18 +193,12 @@ std::string ToString(RefineStatus status) {
 }
 
 std::vector<std::string> RefineOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  require(centre_weight > 0.0, "centre_weight must be positive", centre_weight);
-  require(corner_weight >= 0.0, "corner_weight must not be negative", corner_weight);
-  require(huber_px > 0.0, "huber_px must be positive", huber_px);
-  require(max_iterations > 0, "max_iterations must be positive", max_iterations);
-  return problems;
+  ProblemList problems;
+  problems.RequirePositive("centre_weight", centre_weight);
+  problems.Require(corner_weight >= 0.0, "corner_weight must not be negative", corner_weight);
+  problems.RequirePositive("huber_px", huber_px);
+  problems.RequirePositive("max_iterations", max_iterations);
+  return problems.lines();
 }
 
 std::string RefinedExtrinsic::Summary() const {
@@ -228,7 +218,7 @@ RefinedExtrinsic RefineExtrinsic(const std::vector<const BoardSample*>& samples,
                                  const CameraModel& camera,
                                  const Eigen::Isometry3d& T_camera_lidar_start,
                                  const RefineOptions& options) {
-  RequireUsable(options);
+  RequireUsable("RefineOptions", options.Problems());
   RefinedExtrinsic refined;
   refined.T_camera_lidar = T_camera_lidar_start;
   if (samples.size() < kMinSamples) {

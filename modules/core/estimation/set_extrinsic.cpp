@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
 #include <Eigen/SVD>
@@ -10,6 +9,7 @@
 
 #include "core/estimation/set_cost.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -54,13 +54,6 @@ bool AllFinite(const std::vector<const BoardSample*>& set) {
   return true;
 }
 
-void RequirePositive(const char* name, double value, std::vector<std::string>* problems) {
-  if (value > 0.0) return;
-  std::ostringstream text;
-  text << name << " must be positive, is " << value;
-  problems->push_back(text.str());
-}
-
 }  // namespace
 
 std::string ToString(SetStatus status) {
@@ -76,12 +69,12 @@ std::string ToString(SetStatus status) {
 }
 
 std::vector<std::string> SetExtrinsicOptions::Problems() const {
-  std::vector<std::string> problems;
-  RequirePositive("sigma_normal_rad", sigma_normal_rad, &problems);
-  RequirePositive("sigma_centre_m", sigma_centre_m, &problems);
-  RequirePositive("sigma_centre_px", sigma_centre_px, &problems);
-  RequirePositive("max_iterations", max_iterations, &problems);
-  return problems;
+  ProblemList problems;
+  problems.RequirePositive("sigma_normal_rad", sigma_normal_rad);
+  problems.RequirePositive("sigma_centre_m", sigma_centre_m);
+  problems.RequirePositive("sigma_centre_px", sigma_centre_px);
+  problems.RequirePositive("max_iterations", max_iterations);
+  return problems.lines();
 }
 
 Eigen::Isometry3d AnalyticExtrinsic(const std::vector<const BoardSample*>& set) {
@@ -99,8 +92,7 @@ Eigen::Isometry3d AnalyticExtrinsic(const std::vector<const BoardSample*>& set) 
 SetExtrinsic EstimateSetExtrinsic(const std::vector<const BoardSample*>& set,
                                   const CameraModel& camera,
                                   const SetExtrinsicOptions& options) {
-  const std::vector<std::string> problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("SetExtrinsicOptions: " + problems.front());
+  RequireUsable("SetExtrinsicOptions", options.Problems());
 
   SetExtrinsic result;
   constexpr std::size_t kMinPoses = 3;

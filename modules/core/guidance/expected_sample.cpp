@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include <Eigen/Cholesky>
 
 #include "core/estimation/left_perturbation.hpp"
 #include "core/estimation/lidar_bias.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -190,34 +190,29 @@ CameraBoard ExpectedCameraBoard(const Eigen::Isometry3d& T_camera_board,
 }  // namespace
 
 std::vector<std::string> SensorExpectation::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
+  ProblemList problems;
   constexpr double kDegrees = 180.0 / M_PI;
-  require(min_elevation_rad >= -M_PI / 2,
-          "min_elevation_deg must be at least -90",
-          kDegrees * min_elevation_rad);
-  require(max_elevation_rad <= M_PI / 2,
-          "max_elevation_deg must be at most 90",
-          kDegrees * max_elevation_rad);
-  require(max_elevation_rad > min_elevation_rad,
-          "max_elevation_deg must exceed min_elevation_deg",
-          kDegrees * max_elevation_rad);
-  require(max_azimuth_rad > 0.0 && max_azimuth_rad <= M_PI,
-          "max_azimuth_deg must be within 0 and 180",
-          kDegrees * max_azimuth_rad);
-  require(num_rows >= 2, "num_rows must be at least 2", num_rows);
+  problems.Require(min_elevation_rad >= -M_PI / 2,
+                   "min_elevation_deg must be at least -90",
+                   kDegrees * min_elevation_rad);
+  problems.Require(max_elevation_rad <= M_PI / 2,
+                   "max_elevation_deg must be at most 90",
+                   kDegrees * max_elevation_rad);
+  problems.Require(max_elevation_rad > min_elevation_rad,
+                   "max_elevation_deg must exceed min_elevation_deg",
+                   kDegrees * max_elevation_rad);
+  problems.Require(max_azimuth_rad > 0.0 && max_azimuth_rad <= M_PI,
+                   "max_azimuth_deg must be within 0 and 180",
+                   kDegrees * max_azimuth_rad);
+  problems.Require(num_rows >= 2, "num_rows must be at least 2", num_rows);
   // An offset of each row is an unknown of a dense equation.
-  require(num_rows <= static_cast<int>(kMaxRings), "num_rows must be at most 256", num_rows);
-  require(column_step_rad > 0.0 && column_step_rad < 0.1,
-          "column_step_deg must be within 0 and 5",
-          kDegrees * column_step_rad);
-  require(corner_noise_px > 0.0, "corner_noise_px must be positive", corner_noise_px);
-  return problems;
+  problems.Require(
+      num_rows <= static_cast<int>(kMaxRings), "num_rows must be at most 256", num_rows);
+  problems.Require(column_step_rad > 0.0 && column_step_rad < 0.1,
+                   "column_step_deg must be within 0 and 5",
+                   kDegrees * column_step_rad);
+  problems.RequirePositive("corner_noise_px", corner_noise_px);
+  return problems.lines();
 }
 
 BoardSample ExpectedSample(const Eigen::Isometry3d& T_camera_board,

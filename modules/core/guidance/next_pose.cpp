@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "core/geometry/rigid.hpp"
 #include "core/guidance/advice.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -16,11 +16,6 @@ constexpr double kRadPerDeg = M_PI / 180.0;
 // Nearer in both is the same view again, with the same errors of lens and board.
 constexpr double kNewDistanceM = 0.3;
 constexpr double kNewAngleRad = 15.0 * kRadPerDeg;
-
-void RequireUsable(const GuidanceOptions& options) {
-  const std::vector<std::string> problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("GuidanceOptions: " + problems.front());
-}
 
 // Both look ahead, upright: lidar x is camera z, lidar z is camera -y.
 Eigen::Isometry3d LookingAlike() {
@@ -247,17 +242,17 @@ class PoseSearch {
 }  // namespace
 
 std::vector<std::string> GuidanceOptions::Problems() const {
-  std::vector<std::string> problems = tolerance.Problems();
-  for (const auto& more : {sensors.Problems(), limits.Problems()}) {
-    problems.insert(problems.end(), more.begin(), more.end());
-  }
-  return problems;
+  ProblemList problems;
+  problems.Add(tolerance.Problems());
+  problems.Add(sensors.Problems());
+  problems.Add(limits.Problems());
+  return problems.lines();
 }
 
 NextPose ProposeNextPose(const GuidanceState& state,
                          const GuidedRig& rig,
                          const GuidanceOptions& options) {
-  RequireUsable(options);
+  RequireUsable("GuidanceOptions", options.Problems());
   const ExtrinsicBelief belief = BeliefOf(state);
   const PoseSearch search(state, belief, rig, options);
   NextPose next;

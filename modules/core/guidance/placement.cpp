@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "core/board/board_sample.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -68,27 +68,21 @@ bool IsInFieldOfView(const BoardPose& pose_lidar, const SensorExpectation& expec
 }  // namespace
 
 std::vector<std::string> PlacementLimits::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
+  ProblemList problems;
   constexpr double kDegrees = 180.0 / M_PI;
-  require(min_distance_m > 0.0, "min_distance_m must be positive", min_distance_m);
-  require(max_distance_m >= min_distance_m && std::isfinite(max_distance_m),
-          "max_distance_m must be at least min_distance_m",
-          max_distance_m);
-  require(max_incidence_rad > 0.0 && max_incidence_rad < M_PI / 2,
-          "max_incidence_deg must be within 0 and 90",
-          kDegrees * max_incidence_rad);
-  require(image_margin >= 0.0 && image_margin < 0.5,
-          "image_margin must be within 0 and 0.5",
-          image_margin);
-  require(min_square_px >= 0.0, "min_square_px must not be negative", min_square_px);
-  require(min_rows >= 0, "min_rows must not be negative", min_rows);
-  return problems;
+  problems.RequirePositive("min_distance_m", min_distance_m);
+  problems.Require(max_distance_m >= min_distance_m && std::isfinite(max_distance_m),
+                   "max_distance_m must be at least min_distance_m",
+                   max_distance_m);
+  problems.Require(max_incidence_rad > 0.0 && max_incidence_rad < M_PI / 2,
+                   "max_incidence_deg must be within 0 and 90",
+                   kDegrees * max_incidence_rad);
+  problems.Require(image_margin >= 0.0 && image_margin < 0.5,
+                   "image_margin must be within 0 and 0.5",
+                   image_margin);
+  problems.Require(min_square_px >= 0.0, "min_square_px must not be negative", min_square_px);
+  problems.Require(min_rows >= 0, "min_rows must not be negative", min_rows);
+  return problems.lines();
 }
 
 std::optional<Eigen::Isometry3d> PoseOf(const Placement& placement,

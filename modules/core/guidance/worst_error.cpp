@@ -1,10 +1,10 @@
 #include "core/guidance/worst_error.hpp"
 
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "core/assessment/predicted_error.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -14,35 +14,25 @@ constexpr double kSquareMillimetres = 1e6;  // in a square metre
 constexpr int kNumColumns = 5;
 constexpr int kNumRows = 5;
 
-void RequireUsable(const ErrorTolerance& tolerance) {
-  const std::vector<std::string> problems = tolerance.Problems();
-  if (!problems.empty()) throw std::invalid_argument("ErrorTolerance: " + problems.front());
-}
-
 }  // namespace
 
 std::string ToString(ErrorUnit unit) { return unit == ErrorUnit::kMillimetres ? "mm" : "px"; }
 
 std::vector<std::string> ErrorTolerance::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  require(tolerance > 0.0 && std::isfinite(tolerance), "tolerance must be positive", tolerance);
-  require(min_range_m > 0.0, "min_range_m must be positive", min_range_m);
-  require(max_range_m >= min_range_m && std::isfinite(max_range_m),
-          "max_range_m must be at least min_range_m",
-          max_range_m);
-  return problems;
+  ProblemList problems;
+  problems.Require(
+      tolerance > 0.0 && std::isfinite(tolerance), "tolerance must be positive", tolerance);
+  problems.RequirePositive("min_range_m", min_range_m);
+  problems.Require(max_range_m >= min_range_m && std::isfinite(max_range_m),
+                   "max_range_m must be at least min_range_m",
+                   max_range_m);
+  return problems.lines();
 }
 
 ErrorScene::ErrorScene(const CameraModel& camera,
                        const Eigen::Isometry3d& T_camera_lidar,
                        const ErrorTolerance& tolerance) {
-  RequireUsable(tolerance);
+  RequireUsable("ErrorTolerance", tolerance.Problems());
   for (int row = 0; row < kNumRows; ++row) {
     for (int column = 0; column < kNumColumns; ++column) {
       const Eigen::Vector2d pixel_px((camera.width_px - 1.0) * column / (kNumColumns - 1),

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "core/lidar/spectrum_scan.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -51,12 +51,12 @@ std::string ToString(PacketFault fault) {
 }
 
 std::vector<std::string> LidarPacketOptions::Problems() const {
-  std::vector<std::string> problems = vlp16.Problems();
-  if (!(split_azimuth_rad >= 0 && split_azimuth_rad < 2 * M_PI)) {
-    problems.push_back("split_azimuth_deg must be from 0 to below 360, is " +
-                       std::to_string(split_azimuth_rad * 180.0 / M_PI));
-  }
-  return problems;
+  ProblemList problems;
+  problems.Add(vlp16.Problems());
+  problems.Require(split_azimuth_rad >= 0 && split_azimuth_rad < 2 * M_PI,
+                   "split_azimuth_deg must be from 0 to below 360",
+                   split_azimuth_rad * 180.0 / M_PI);
+  return problems.lines();
 }
 
 LidarPacketStream::LidarPacketStream(const LidarPacketOptions& options)
@@ -65,8 +65,7 @@ LidarPacketStream::LidarPacketStream(const LidarPacketOptions& options)
                                                     : std::int64_t{1} << 32),
       assembler_(options.model == LidarModel::kVlp16 ? SweepEnd::kAtAzimuth : SweepEnd::kAtJump,
                  options.model == LidarModel::kVlp16 ? options.split_azimuth_rad : 0.0) {
-  const auto problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("lidar packets: " + problems[0]);
+  RequireUsable("LidarPacketOptions", options.Problems());
 }
 
 std::vector<TimedSweep> LidarPacketStream::Add(PacketBytes bytes, std::int64_t host_utime) {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <random>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 #include "core/estimation/set_extrinsic.hpp"
+#include "core/problems.hpp"
 #include "core/selection/best_sets.hpp"
 
 namespace voqcal {
@@ -149,26 +149,19 @@ std::vector<SelectionCriterion> AllSelectionCriteria() {
 }
 
 std::vector<std::string> SelectionOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, double value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  require(num_sets >= 1, "num_sets must be at least 1", num_sets);
-  require(nominal.rotation_rad > 0, "rotation_rad must be positive", nominal.rotation_rad);
-  require(nominal.along_ray_m > 0, "along_ray_m must be positive", nominal.along_ray_m);
-  require(nominal.across_px > 0, "across_px must be positive", nominal.across_px);
-  return problems;
+  ProblemList problems;
+  problems.Require(num_sets >= 1, "num_sets must be at least 1", num_sets);
+  problems.Require(nominal.rotation_rad > 0, "rotation_rad must be positive", nominal.rotation_rad);
+  problems.Require(nominal.along_ray_m > 0, "along_ray_m must be positive", nominal.along_ray_m);
+  problems.Require(nominal.across_px > 0, "across_px must be positive", nominal.across_px);
+  return problems.lines();
 }
 
 std::vector<VoqSet> SelectSets(const std::vector<BoardSample>& samples,
                                const BoardSpec& board,
                                const CameraModel& camera,
                                const SelectionOptions& options) {
-  const std::vector<std::string> problems = options.Problems();
-  if (!problems.empty()) throw std::invalid_argument("SelectionOptions: " + problems.front());
+  RequireUsable("SelectionOptions", options.Problems());
   if (options.criterion == SelectionCriterion::kVoq) {
     return SelectByVoq(samples, board, options.num_sets);
   }

@@ -1,9 +1,9 @@
 #include "core/simulation/simulation.hpp"
 
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
+#include "core/problems.hpp"
 #include "core/simulation/board_script.hpp"
 #include "core/simulation/camera_simulator.hpp"
 #include "core/simulation/clutter.hpp"
@@ -44,52 +44,47 @@ std::int64_t Microseconds(double time_s) { return std::llround(time_s * 1e6); }
 }  // namespace
 
 std::vector<std::string> SimulationOptions::Problems() const {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool is_met, const char* rule, auto value) {
-    if (is_met) return;
-    std::ostringstream text;
-    text << rule << ", is " << value;
-    problems.push_back(text.str());
-  };
-  const auto require_sigma = [&require](const char* rule, double value) {
-    require(value >= 0 && std::isfinite(value), rule, value);
+  ProblemList problems;
+  const auto require_sigma = [&problems](const char* rule, double value) {
+    problems.Require(value >= 0 && std::isfinite(value), rule, value);
   };
   const Eigen::Matrix3d R = T_camera_lidar.linear();
   const double skew = (R.transpose() * R - Eigen::Matrix3d::Identity()).norm();
-  require(skew < 1e-6 && R.determinant() > 0,
-          "T_camera_lidar must be a rotation and a translation: |R'R - I|",
-          skew);
-  require(T_camera_lidar.translation().norm() < 1.0,
-          "T_camera_lidar must keep the camera within 1 m of the lidar: |t|",
-          T_camera_lidar.translation().norm());
-  require(num_poses >= 1, "num_poses must be at least 1", num_poses);
-  require(hold_s > 0 && std::isfinite(hold_s), "hold_s must be positive", hold_s);
-  require(move_s > 0 && std::isfinite(move_s), "move_s must be positive", move_s);
-  require(min_distance_m > 0, "min_distance_m must be positive", min_distance_m);
-  require(max_distance_m >= min_distance_m && std::isfinite(max_distance_m),
-          "max_distance_m must be at least min_distance_m",
-          max_distance_m);
-  require(second_board_scale == 0 || (second_board_scale >= 0.2 && second_board_scale <= 2.0),
-          "second_board_scale must be 0 or within 0.2 and 2",
-          second_board_scale);
-  for (const std::string& problem : scan.Problems()) problems.push_back(problem);
+  problems.Require(skew < 1e-6 && R.determinant() > 0,
+                   "T_camera_lidar must be a rotation and a translation: |R'R - I|",
+                   skew);
+  problems.Require(T_camera_lidar.translation().norm() < 1.0,
+                   "T_camera_lidar must keep the camera within 1 m of the lidar: |t|",
+                   T_camera_lidar.translation().norm());
+  problems.Require(num_poses >= 1, "num_poses must be at least 1", num_poses);
+  problems.Require(hold_s > 0 && std::isfinite(hold_s), "hold_s must be positive", hold_s);
+  problems.Require(move_s > 0 && std::isfinite(move_s), "move_s must be positive", move_s);
+  problems.RequirePositive("min_distance_m", min_distance_m);
+  problems.Require(max_distance_m >= min_distance_m && std::isfinite(max_distance_m),
+                   "max_distance_m must be at least min_distance_m",
+                   max_distance_m);
+  problems.Require(
+      second_board_scale == 0 || (second_board_scale >= 0.2 && second_board_scale <= 2.0),
+      "second_board_scale must be 0 or within 0.2 and 2",
+      second_board_scale);
+  problems.Add(scan.Problems());
   require_sigma("range_noise_m must not be negative", range_noise_m);
   require_sigma("ring_bias_m must not be negative", ring_bias_m);
-  require(std::isfinite(common_bias_m), "common_bias_m must be finite", common_bias_m);
-  require(std::isfinite(dark_bias_m), "dark_bias_m must be finite", dark_bias_m);
+  problems.Require(std::isfinite(common_bias_m), "common_bias_m must be finite", common_bias_m);
+  problems.Require(std::isfinite(dark_bias_m), "dark_bias_m must be finite", dark_bias_m);
   require_sigma("intensity_noise must not be negative", intensity_noise);
-  require(beam_divergence_rad >= 0 && beam_divergence_rad <= 0.05,
-          "beam_divergence_rad must be within 0 and 0.05",
-          beam_divergence_rad);
-  require(pointing_noise_rad >= 0 && pointing_noise_rad <= 0.01,
-          "pointing_noise_rad must be within 0 and 0.01",
-          pointing_noise_rad);
-  require(dropout >= 0 && dropout < 1, "dropout must be within 0 and 1", dropout);
+  problems.Require(beam_divergence_rad >= 0 && beam_divergence_rad <= 0.05,
+                   "beam_divergence_rad must be within 0 and 0.05",
+                   beam_divergence_rad);
+  problems.Require(pointing_noise_rad >= 0 && pointing_noise_rad <= 0.01,
+                   "pointing_noise_rad must be within 0 and 0.01",
+                   pointing_noise_rad);
+  problems.Require(dropout >= 0 && dropout < 1, "dropout must be within 0 and 1", dropout);
   require_sigma("image_noise must not be negative", image_noise);
-  require(image_blur_px >= 0 && image_blur_px <= 10,
-          "image_blur_px must be within 0 and 10",
-          image_blur_px);
-  return problems;
+  problems.Require(image_blur_px >= 0 && image_blur_px <= 10,
+                   "image_blur_px must be within 0 and 10",
+                   image_blur_px);
+  return problems.lines();
 }
 
 struct Simulation::Impl {

@@ -281,6 +281,7 @@ void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
   section.ReadDegrees("max_sigma_deg", &options->max_sigma_rad);
   section.ReadDegrees("tolerance_deg", &options->tolerance_rad);
   section.Read("num_sigmas", &options->num_sigmas);
+  section.Read("min_gain_sigmas", &options->min_gain_sigmas);
   section.Read("min_jump_m", &options->view.min_jump_m);
   section.ReadDegrees("max_step_deg", &options->view.max_step_rad);
   section.Read("board_margin_m", &options->view.board_margin_m);

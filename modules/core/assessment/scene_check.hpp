@@ -20,7 +20,9 @@ struct SceneCheckOptions {
       0.0087266463;  ///< An axis known no better than this (0.5 deg) is left open.
   /// An offset about an axis disagrees beyond this (0.2 deg), half a pixel of a sweep...
   double tolerance_rad = 0.0034906585;
-  double num_sigmas = 3.0;  ///< ...and beyond so many of its standard errors.
+  double num_sigmas = 3.0;  ///< ...and beyond so many of its standard errors,
+  /// if turning back costs so many standard errors of the score; else the axis is left open.
+  double min_gain_sigmas = 2.0;
   SceneViewOptions view;
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
@@ -53,6 +55,8 @@ struct SceneCheck {
   double peak_score = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector3d offset_rad = kUnknown;  ///< PerturbLeft by it leads to the peak.
   Eigen::Vector3d sigma_rad = kUnknown;   ///< By fitting halves of the scene.
+  /// What the peak's score loses when it is turned back about an axis, in standard errors of that.
+  Eigen::Vector3d gain_sigmas = kUnknown;
 };
 
 /// Scores `T_camera_lidar` on every scene at once, so that what stands still counts in each and

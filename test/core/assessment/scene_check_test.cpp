@@ -99,6 +99,21 @@ TEST_F(CheckSceneTest, SameViewsSameAnswer) {
   EXPECT_EQ(one.reason, two.reason);
 }
 
+// The same turn, judged by one who asks more of the score than it gains.
+TEST_F(CheckSceneTest, LeavesATurnOpenThatTheScoreShowsTooLittle) {
+  const Eigen::Isometry3d turned = Turned(0, 0.8, 0);
+  const double gain_sigmas = Check(turned).gain_sigmas.y();
+  EXPECT_GT(gain_sigmas, 2.0);
+  SceneCheckOptions options;
+  options.min_gain_sigmas = gain_sigmas + 0.1;
+  const SceneCheck check = CheckScene(*views_, Camera(), turned, turned, options);
+  EXPECT_NE(check.verdict, SceneVerdict::kDisagrees);
+  EXPECT_THAT(check.reason, HasSubstr("too little shows a turn about y"));
+  options.min_gain_sigmas = gain_sigmas - 0.1;
+  EXPECT_EQ(CheckScene(*views_, Camera(), turned, turned, options).verdict,
+            SceneVerdict::kDisagrees);
+}
+
 TEST_F(CheckSceneTest, DoesNotJudgeWithoutScenesOrEdges) {
   const SceneCheck none =
       CheckScene({}, Camera(), test::TestExtrinsic(), test::TestExtrinsic(), {});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -40,5 +41,20 @@ struct Vlp16PacketWriter {
   }
   PacketBytes Bytes() const { return {bytes.data(), bytes.size()}; }
 };
+
+constexpr double kVlp16PacketUs = 12 * 110.592;  ///< From one packet to the next.
+
+/// Turns of 75 packets, each beam with an echo at 3 m.
+inline std::vector<Vlp16PacketWriter> Vlp16Turns(int num_packets) {
+  constexpr int kStep = 40;
+  std::vector<Vlp16PacketWriter> packets;
+  for (int i = 0; i < num_packets; ++i) {
+    packets.emplace_back(i * 12 * kStep % 36000,
+                         kStep,
+                         static_cast<std::uint32_t>(1000 + std::llround(i * kVlp16PacketUs)));
+    packets.back().SetAllEchoes(1500, 50);
+  }
+  return packets;
+}
 
 }  // namespace voqcal::test

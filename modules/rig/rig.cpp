@@ -15,9 +15,10 @@ std::vector<std::string> DriverOptions::Problems() const {
   problems.Require(
       jpeg_quality >= 1 && jpeg_quality <= 100, "jpeg_quality must be 1 to 100", jpeg_quality);
   const int num_named = !device.empty() + !pipeline.empty() + !url.empty();
-  problems.Require(source != DriverSource::kVideo || num_named == 1,
-                   "source video needs one of device, pipeline and url: their number",
-                   num_named);
+  if (source == DriverSource::kVideo && num_named != 1) {
+    problems.Add(
+        {"source video needs one of device, pipeline and url, has " + std::to_string(num_named)});
+  }
   problems.RequirePositive("retry_s", retry_s);
   return problems.lines();
 }

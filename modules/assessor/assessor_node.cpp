@@ -5,6 +5,7 @@
 
 #include <system_error>
 
+#include "core/selection/voq.hpp"
 #include "messaging/convert_assessment.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_result.hpp"
@@ -136,6 +137,14 @@ CalibrationResult AssessorNode::Result() {
                               rig_.camera,
                               result.T_camera_lidar,
                               rig_.diagnosis);
+
+  result.lens_correction = CorrectLens(samples,
+                                       rig_.board,
+                                       rig_.camera,
+                                       result.T_camera_lidar,
+                                       result.held_out,
+                                       rig_.extrinsic_refiner.likelihood);
+  result.e_dim_mm = MedianBoardDimensionErrorMm(all, rig_.board);
 
   result.used_ids = IdsOf(samples);
   for (std::size_t i = 0; i < averaged_->inconsistent_ids.size(); ++i) {

@@ -5,6 +5,7 @@
 
 #include "rig/assessment_yaml.hpp"
 #include "rig/atomic_file.hpp"
+#include "rig/lens_correction_yaml.hpp"
 #include "rig/lidar_bias_yaml.hpp"
 #include "rig/number_text.hpp"
 #include "rig/transform_yaml.hpp"
@@ -18,37 +19,6 @@ constexpr char kMadeFromNote[] =
     "on\n"
     "# samples and rig only, so a live session and a run on its recording give the same bytes.\n";
 
-template <typename Vector>
-std::string List(const Vector& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + NumberText(value);
-  return "[" + text + "]";
-}
-
-template <typename Matrix>
-std::string Rows(const Matrix& matrix, const std::string& indent) {
-  std::string text;
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    std::vector<double> row;
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
-    text += indent + "- " + List(row) + "\n";
-  }
-  return text;
-}
-
-/// x y z w, of the two quaternions of a rotation the one with w >= 0.
-Eigen::Vector4d QuaternionXyzw(const Eigen::Isometry3d& T) {
-  const Eigen::Quaterniond q = Eigen::Quaterniond(T.linear()).normalized();
-  return q.w() < 0 ? -q.coeffs() : q.coeffs();
-}
-
-std::string Transform(const Eigen::Isometry3d& T, const std::string& indent) {
-  const Eigen::Vector3d translation_m = T.translation();
-  return indent + "matrix:\n" + Rows(T.matrix(), indent + "  ") +         //
-         indent + "quaternion_xyzw: " + List(QuaternionXyzw(T)) + "\n" +  //
-         indent + "translation_m: " + List(translation_m) + "\n";
-}
-
 std::string Score(const std::string& name, const std::string& note, const SceneScore& score) {
   return "  " + name + ":  # " + note + "\n" + ScoreYaml(score);
 }
@@ -56,11 +26,11 @@ std::string Score(const std::string& name, const std::string& note, const SceneS
 std::string Averaged(const AveragedPart& averaged) {
   return "averaged:  # the VOQ average that the refinement started from\n"
          "  T_camera_lidar:\n" +
-         Transform(averaged.T_camera_lidar, "    ") +
+         TransformYaml(averaged.T_camera_lidar, "    ") +
          "  # standard deviation of the kept sets: rotation_rad, then translation_m, left (camera) "
          "side\n"
          "  spread: " +
-         List(averaged.spread) + "\n  num_sets: " + std::to_string(averaged.num_sets) +
+         ListYaml(averaged.spread) + "\n  num_sets: " + std::to_string(averaged.num_sets) +
          "\n  num_sets_kept: " + std::to_string(averaged.num_kept) + "\n";
 }
 
@@ -96,7 +66,11 @@ std::string Samples(const CalibrationResult& result) {
                  ", candidate: " + std::to_string(sample.candidate) +
                  ", reason: " + QuotedYaml(sample.reason) + "}\n";
   }
-  return "samples:\n  used: [" + used + "]\n  rejected:" + rejected + "  exchanged:" + exchanged;
+  return "samples:\n"
+         "  # median over the accepted samples of the sum of the lidar's errors of the four edges\n"
+         "  e_dim_mm: " +
+         NumberText(result.e_dim_mm) + "\n  used: [" + used + "]\n  rejected:" + rejected +
+         "  exchanged:" + exchanged;
 }
 
 /// The matrix form as a transform; an error of the section if it is not rigid.
@@ -131,18 +105,18 @@ void ReadMatrix(YamlSection* section, Eigen::Isometry3d* T) {
 }  // namespace
 
 std::string ToYaml(const CalibrationResult& result) {
-  const std::string covariance = Rows(result.covariance, "  ");
+  const std::string covariance = RowsYaml(result.covariance, "  ");
   const MadeFrom& made_from = result.made_from;
   return "# Extrinsic calibration of a camera and a lidar, by voqcal.\n"
          "T_camera_lidar:  # p_camera = T_camera_lidar * p_lidar, metres\n" +
-         Transform(result.T_camera_lidar, "  ") +
+         TransformYaml(result.T_camera_lidar, "  ") +
          "T_lidar_camera:  # p_lidar = T_lidar_camera * p_camera, metres: the inverse\n" +
-         Transform(result.T_camera_lidar.inverse(), "  ") +
+         TransformYaml(result.T_camera_lidar.inverse(), "  ") +
          "# of T_camera_lidar: rotation_rad, then translation_m, perturbed on the left (camera) "
          "side\n"
          "covariance:\n" +
          covariance + Methods(result) + Averaged(result.averaged) +
-         LidarBiasYaml(result.lidar_bias) +
+         LidarBiasYaml(result.lidar_bias) + LensCorrectionYaml(result.lens_correction) +
          "# reprojection error of the board's centre in pixels, and times the metres per pixel at "
          "the\n"
          "# board; mean distance of the board's corners; angle between the normals;\n"

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/diagnosis.hpp"
+#include "core/assessment/lens_correction.hpp"
 #include "core/assessment/predicted_error.hpp"
 #include "core/assessment/scene_check.hpp"
 #include "core/assessment/score_bins.hpp"
@@ -63,6 +65,10 @@ struct CalibrationResult {
   std::vector<PredictedError> predicted;    ///< Out to 50 m.
   SceneCheck scene_check;
   Diagnosis diagnosis;
+  /// For who can correct the intrinsics too; nothing else of the result uses it.
+  LensCorrection lens_correction;
+  /// Median over the accepted samples of e_dim, the errors of the lidar's four edge lengths summed.
+  double e_dim_mm = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::int64_t> used_ids;
   std::vector<RejectedSample> rejected;
   std::vector<ExchangedSample> exchanged;

@@ -254,6 +254,8 @@ void ReadLikelihood(YamlSection* refiner, LikelihoodOptions* options) {
   section.Read("focal_length_error", &options->focal_length_error);
   section.Read("principal_point_error_px", &options->principal_point_error_px);
   section.Read("board_size_error", &options->board_size_error);
+  section.Read("lens_error", &options->lens_error);
+  section.Read("corner_error_px", &options->corner_error_px);
   section.Read("max_iterations", &options->max_iterations);
   Finish(*options, &section);
 }

@@ -53,6 +53,24 @@ std::string MethodLines(const CalibrationResult& result) {
          Format(", rings %+.1f to %+.1f mm\n", 1e3 * lowest_m, 1e3 * highest_m);
 }
 
+std::string LensLines(const CalibrationResult& result) {
+  const LensCorrection& lens = result.lens_correction;
+  if (!lens.IsUsable()) return "lens  no correction: " + lens.problem + "\n";
+  const LensErrors px = LensReachPx(lens.camera) * lens.errors.errors;
+  return "lens  held out with the intrinsics corrected by the same samples: " +
+         Summary(lens.held_out) + "\n" +
+         Format(
+             "  focal length %+.2f %%, principal point %+.1f %+.1f px, radial %+.1f %+.1f px at "
+             "half the width; lens_correction\n"
+             "  in the result has this camera and the extrinsic that goes with it: the one above "
+             "goes with the rig file's\n",
+             100 * lens.errors.errors[kFocalLength],
+             px[kPrincipalPointX],
+             px[kPrincipalPointY],
+             px[kRadial2],
+             px[kRadial4]);
+}
+
 std::string SceneLines(const CalibrationResult& result) {
   std::string text = "by part of the scene, held-out centres\n";
   for (const auto* bins : {&result.held_out_by_cell, &result.held_out_by_range}) {
@@ -113,6 +131,10 @@ std::string Summary(const CalibrationResult& result) {
   text += "  averaged   " + Summary(result.of_average) + "   (" +
           std::to_string(result.averaged.num_kept) + " of " +
           std::to_string(result.averaged.num_sets) + " sets kept)\n";
+  text += LensLines(result);
+  text +=
+      Format("lidar's boards  sum of the edges' errors (e_dim) %.1f mm, median of the samples\n",
+             result.e_dim_mm);
   text += SceneLines(result) + DiagnosisLines(result.diagnosis);
   for (const RejectedSample& rejected : result.rejected) {
     text += "left out\n  sample " + std::to_string(rejected.id) + ": " + rejected.reason + "\n";

@@ -1,7 +1,9 @@
 #include "core/estimation/likelihood.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "core/estimation/likelihood_search.hpp"
 #include "core/estimation/likelihood_uncertainty.hpp"
@@ -27,10 +29,23 @@ LidarBias BiasOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covarian
   bias.dark_step = estimate(kDarkStep);
   bias.outline_lift = estimate(kLift);
   bias.outline_rise = estimate(kRise);
-  for (Eigen::Index i = kFirstRing; i < search.state().faults_m.size(); ++i) {
-    bias.rings.push_back(estimate(i));
+  for (Eigen::Index i = 0; i < search.state().NumRings(); ++i) {
+    bias.rings.push_back(estimate(kFirstRing + i));
   }
   return bias;
+}
+
+LensEstimate LensOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covariance) {
+  const Eigen::Index num_lens = search.state().num_lens;
+  LensEstimate lens;
+  if (num_lens == 0) return lens;
+  lens.errors = search.state().faults_m.tail(num_lens);
+  lens.standard_errors = covariance.diagonal().tail(num_lens).cwiseSqrt();
+  for (Eigen::Index i = 0; i < num_lens; ++i) {
+    lens.is_observable[static_cast<std::size_t>(i)] =
+        search.IsFree(kFirstRing + search.state().NumRings() + i);
+  }
+  return lens;
 }
 
 void AddResiduals(const LikelihoodSearch& search, LikelihoodExtrinsic* refined) {
@@ -64,6 +79,85 @@ std::vector<LikelihoodPose> PosesOf(const std::vector<const BoardSample*>& sampl
   return poses;
 }
 
+std::vector<LikelihoodPose> PosesWithLens(const std::vector<const BoardSample*>& samples,
+                                          const BoardSpec& board,
+                                          const CameraModel& camera,
+                                          const ShadeScale& shades,
+                                          const Eigen::Isometry3d& T_camera_lidar,
+                                          const LikelihoodOptions& options) {
+  std::vector<LikelihoodPose> poses = PosesOf(samples, shades, T_camera_lidar);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    poses[i].lens = LensTermsOf(*samples[i], board, camera, options.corner_error_px);
+  }
+  return poses;
+}
+
+LikelihoodExtrinsic RefinePoses(std::vector<LikelihoodPose> poses,
+                                const ShadeScale& shades,
+                                const CameraModel& camera,
+                                const Eigen::Isometry3d& T_camera_lidar_start,
+                                const LikelihoodOptions& options) {
+  constexpr int kNoiseRounds = 4;    // levels settle to a percent in three...
+  constexpr int kStepsPerRound = 4;  // ...and do not need the minimum to the last digit
+  LikelihoodExtrinsic refined;
+  refined.T_camera_lidar = T_camera_lidar_start;
+  refined.status = RefineStatus::kDegenerate;
+  if (poses.size() < kMinSamples) return refined;
+
+  LikelihoodSearch search(std::move(poses), T_camera_lidar_start, options);
+  for (int round = 0; round < kNoiseRounds; ++round) {
+    search.Minimise(kStepsPerRound, kSettled);
+    const Eigen::MatrixXd covariance = search.CovarianceAllFree();
+    if (covariance.size() == 0) return refined;
+    search.HoldUnobservable(covariance);
+    search.UpdateNoise();
+  }
+  refined.status = RefineStatus::kNotConverged;
+  if (!search.Minimise(options.max_iterations, kSettled) || !search.IsPhysical()) return refined;
+  if (search.CovarianceAllFree().size() == 0) {
+    refined.status = RefineStatus::kDegenerate;
+    return refined;
+  }
+  const SharedEquations equations = search.Equations();
+  const Eigen::MatrixXd covariance = search.Covariance(equations);
+  refined.T_camera_lidar = search.state().T_camera_lidar;
+  refined.uncertainty = UncertaintyOf(search, equations, camera, options);
+  refined.bias = BiasOf(search, covariance);
+  refined.bias.shades = shades;
+  refined.lens = LensOf(search, covariance);
+  refined.noise = search.noise();
+  AddResiduals(search, &refined);
+  refined.status = RefineStatus::kConverged;
+  return refined;
+}
+
+LikelihoodExtrinsic RefinePosesNearby(std::vector<LikelihoodPose> poses,
+                                      const LikelihoodExtrinsic& nearby,
+                                      const LikelihoodOptions& options) {
+  LikelihoodExtrinsic refined = nearby;
+  refined.status = RefineStatus::kDegenerate;
+  if (poses.size() < kMinSamples) return refined;
+  LikelihoodSearch search(std::move(poses), nearby.T_camera_lidar, options);
+  search.StartFrom(nearby.bias, nearby.lens, nearby.noise);
+  refined.status = RefineStatus::kNotConverged;
+  if (!search.Minimise(options.max_iterations, kSettledNearby)) return refined;
+  if (!search.IsPhysical()) return refined;
+  const LikelihoodState& state = search.state();
+  refined.T_camera_lidar = state.T_camera_lidar;
+  refined.bias.common.value_m = state.faults_m[kCommon];
+  refined.bias.dark_step.value_m = state.faults_m[kDarkStep];
+  refined.bias.outline_lift.value_m = state.faults_m[kLift];
+  refined.bias.outline_rise.value_m = state.faults_m[kRise];
+  const auto num_rings =
+      std::min(state.NumRings(), static_cast<Eigen::Index>(nearby.bias.rings.size()));
+  for (Eigen::Index i = 0; i < num_rings; ++i) {
+    refined.bias.rings[static_cast<std::size_t>(i)].value_m = state.faults_m[kFirstRing + i];
+  }
+  if (state.num_lens > 0) refined.lens.errors = state.faults_m.tail(state.num_lens);
+  refined.status = RefineStatus::kConverged;
+  return refined;
+}
+
 }  // namespace
 
 std::vector<std::string> LikelihoodOptions::Problems() const {
@@ -84,8 +178,14 @@ std::vector<std::string> LikelihoodOptions::Problems() const {
                    principal_point_error_px);
   problems.Require(
       board_size_error >= 0.0, "board_size_error must not be negative", board_size_error);
+  problems.RequirePositive("lens_error", lens_error);
+  problems.RequirePositive("corner_error_px", corner_error_px);
   problems.RequirePositive("max_iterations", max_iterations);
   return problems.lines();
+}
+
+bool LensEstimate::IsObservable() const {
+  return std::find(is_observable.begin(), is_observable.end(), true) != is_observable.end();
 }
 
 std::string LikelihoodExtrinsic::Summary() const {
@@ -105,67 +205,47 @@ LikelihoodExtrinsic RefineByLikelihood(const std::vector<const BoardSample*>& sa
                                        const CameraModel& camera,
                                        const Eigen::Isometry3d& T_camera_lidar_start,
                                        const LikelihoodOptions& options) {
-  constexpr int kNoiseRounds = 4;    // levels settle to a percent in three...
-  constexpr int kStepsPerRound = 4;  // ...and do not need the minimum to the last digit
   RequireUsable("LikelihoodOptions", options.Problems());
-  LikelihoodExtrinsic refined;
-  refined.T_camera_lidar = T_camera_lidar_start;
-  refined.status = RefineStatus::kDegenerate;
-  if (samples.size() < kMinSamples) return refined;
-
   const ShadeScale shades = MakeShadeScale(samples);
-  LikelihoodSearch search(
-      PosesOf(samples, shades, T_camera_lidar_start), T_camera_lidar_start, options);
-  for (int round = 0; round < kNoiseRounds; ++round) {
-    search.Minimise(kStepsPerRound, kSettled);
-    const Eigen::MatrixXd covariance = search.CovarianceAllFree();
-    if (covariance.size() == 0) return refined;
-    search.HoldUnobservable(covariance);
-    search.UpdateNoise();
-  }
-  refined.status = RefineStatus::kNotConverged;
-  if (!search.Minimise(options.max_iterations, kSettled) || !search.IsPhysical()) return refined;
-  if (search.CovarianceAllFree().size() == 0) {
-    refined.status = RefineStatus::kDegenerate;
-    return refined;
-  }
-  const SharedEquations equations = search.Equations();
-  refined.T_camera_lidar = search.state().T_camera_lidar;
-  refined.uncertainty = UncertaintyOf(search, equations, camera, options);
-  refined.bias = BiasOf(search, search.Covariance(equations));
-  refined.bias.shades = shades;
-  refined.noise = search.noise();
-  AddResiduals(search, &refined);
-  refined.status = RefineStatus::kConverged;
-  return refined;
+  return RefinePoses(PosesOf(samples, shades, T_camera_lidar_start),
+                     shades,
+                     camera,
+                     T_camera_lidar_start,
+                     options);
 }
 
 LikelihoodExtrinsic RefineNearby(const std::vector<const BoardSample*>& samples,
                                  const LikelihoodExtrinsic& nearby,
                                  const LikelihoodOptions& options) {
   RequireUsable("LikelihoodOptions", options.Problems());
-  LikelihoodExtrinsic refined = nearby;
-  refined.status = RefineStatus::kDegenerate;
-  if (samples.size() < kMinSamples) return refined;
-  LikelihoodSearch search(
-      PosesOf(samples, nearby.bias.shades, nearby.T_camera_lidar), nearby.T_camera_lidar, options);
-  search.StartFrom(nearby.bias, nearby.noise);
-  refined.status = RefineStatus::kNotConverged;
-  if (!search.Minimise(options.max_iterations, kSettledNearby)) return refined;
-  if (!search.IsPhysical()) return refined;
-  refined.T_camera_lidar = search.state().T_camera_lidar;
-  refined.bias.common.value_m = search.state().faults_m[kCommon];
-  refined.bias.dark_step.value_m = search.state().faults_m[kDarkStep];
-  refined.bias.outline_lift.value_m = search.state().faults_m[kLift];
-  refined.bias.outline_rise.value_m = search.state().faults_m[kRise];
-  for (std::size_t i = 0; i < refined.bias.rings.size(); ++i) {
-    const auto fault = kFirstRing + static_cast<Eigen::Index>(i);
-    if (fault < search.state().faults_m.size()) {
-      refined.bias.rings[i].value_m = search.state().faults_m[fault];
-    }
-  }
-  refined.status = RefineStatus::kConverged;
-  return refined;
+  return RefinePosesNearby(
+      PosesOf(samples, nearby.bias.shades, nearby.T_camera_lidar), nearby, options);
+}
+
+LikelihoodExtrinsic RefineWithLens(const std::vector<const BoardSample*>& samples,
+                                   const BoardSpec& board,
+                                   const CameraModel& camera,
+                                   const Eigen::Isometry3d& T_camera_lidar_start,
+                                   const LikelihoodOptions& options) {
+  RequireUsable("LikelihoodOptions", options.Problems());
+  const ShadeScale shades = MakeShadeScale(samples);
+  return RefinePoses(PosesWithLens(samples, board, camera, shades, T_camera_lidar_start, options),
+                     shades,
+                     camera,
+                     T_camera_lidar_start,
+                     options);
+}
+
+LikelihoodExtrinsic RefineWithLensNearby(const std::vector<const BoardSample*>& samples,
+                                         const BoardSpec& board,
+                                         const CameraModel& camera,
+                                         const LikelihoodExtrinsic& nearby,
+                                         const LikelihoodOptions& options) {
+  RequireUsable("LikelihoodOptions", options.Problems());
+  return RefinePosesNearby(
+      PosesWithLens(samples, board, camera, nearby.bias.shades, nearby.T_camera_lidar, options),
+      nearby,
+      options);
 }
 
 }  // namespace voqcal

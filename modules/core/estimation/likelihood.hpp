@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -7,7 +8,9 @@
 #include <Eigen/Geometry>
 
 #include "core/board/board_sample.hpp"
+#include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
+#include "core/camera/lens_errors.hpp"
 #include "core/estimation/lidar_bias.hpp"
 #include "core/estimation/refine.hpp"
 #include "core/geometry/rigid.hpp"
@@ -33,6 +36,10 @@ struct LikelihoodOptions {
   double focal_length_error = 0.0003;     ///< 1 sigma, relative.
   double principal_point_error_px = 0.2;  ///< 1 sigma in each direction.
   double board_size_error = 0.0005;       ///< 1 sigma of a chessboard square, relative.
+  /// 1 sigma of each of the LensErrors, where they are estimated (RefineWithLens).
+  double lens_error = 0.005;
+  /// 1 sigma of a chessboard's corner there: more than its noise, as neighbours err alike.
+  double corner_error_px = 0.3;
   int max_iterations = 50;
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
@@ -59,12 +66,22 @@ struct LikelihoodUncertainty {
   Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
+/// Errors of the intrinsics that were given. What the data cannot tell stays zero.
+struct LensEstimate {
+  LensErrors errors = LensErrors::Zero();
+  LensErrors standard_errors = LensErrors::Constant(std::numeric_limits<double>::quiet_NaN());
+  std::array<bool, kNumLensErrors> is_observable{};  ///< As BiasEstimate's.
+
+  bool IsObservable() const;  ///< Any of them.
+};
+
 /// An extrinsic with the lidar's faults that came with it.
 struct LikelihoodExtrinsic {
   /// Takes lidar coordinates to camera coordinates: p_camera = T_camera_lidar * p_lidar.
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
   LikelihoodUncertainty uncertainty;
   LidarBias bias;
+  LensEstimate lens;  ///< RefineWithLens'; the extrinsic then goes with the corrected camera.
   LikelihoodNoise noise;
   double range_rms_m = std::numeric_limits<double>::quiet_NaN();   ///< Of all returns.
   double across_rms_m = std::numeric_limits<double>::quiet_NaN();  ///< Of the centres' rays.
@@ -95,5 +112,22 @@ LikelihoodExtrinsic RefineByLikelihood(const std::vector<const BoardSample*>& sa
 LikelihoodExtrinsic RefineNearby(const std::vector<const BoardSample*>& samples,
                                  const LikelihoodExtrinsic& nearby,
                                  const LikelihoodOptions& options);
+
+/// As RefineByLikelihood, with the errors of the intrinsics (LensErrors) unknown too: each
+/// chessboard's pose answers to them, and what its corners are off in the image tells of them
+/// (LensTerms). The extrinsic goes with CorrectedCamera, not with `camera`: the principal point and
+/// the rotation make up for one another.
+LikelihoodExtrinsic RefineWithLens(const std::vector<const BoardSample*>& samples,
+                                   const BoardSpec& board,
+                                   const CameraModel& camera,
+                                   const Eigen::Isometry3d& T_camera_lidar_start,
+                                   const LikelihoodOptions& options);
+
+/// The same for nearly the samples that `nearby` was refined over, as RefineNearby.
+LikelihoodExtrinsic RefineWithLensNearby(const std::vector<const BoardSample*>& samples,
+                                         const BoardSpec& board,
+                                         const CameraModel& camera,
+                                         const LikelihoodExtrinsic& nearby,
+                                         const LikelihoodOptions& options);
 
 }  // namespace voqcal

@@ -29,7 +29,7 @@ ReturnSums SumReturns(const LikelihoodPose& pose,
                       const LikelihoodState& state,
                       const Eigen::Vector3d& plane,
                       double range_sigma_m) {
-  const Eigen::Index num_rings = state.faults_m.size() - kFirstRing;
+  const Eigen::Index num_rings = state.NumRings();
   ReturnSums sums;
   sums.information.setZero();
   sums.to_rings.setZero(kNumSeen, num_rings);
@@ -73,16 +73,30 @@ void AddOutline(const LikelihoodPose& pose,
   equations->pull.head<kNumDense>() -= J.transpose() * (weight * residual);
 }
 
-// The difference's derivative by the perturbation is taken as identity: they differ by half the
-// tilt from the chessboard's pose, thousandths of a radian.
+// How far the board is from where the chessboard's pixels put it, and what they say of the lens:
+//     r = (T_camera_board - its pose by the chessboard) - S l
+// with the names of LensTerms. The difference's derivative by the perturbation is taken as
+// identity: they differ by half the tilt from the chessboard's pose, thousandths of a radian.
 void AddChessboard(const LikelihoodPose& pose,
-                   const Eigen::Isometry3d& T_camera_board,
+                   const LikelihoodState& state,
+                   std::size_t index,
                    const Matrix6d& covariance,
                    PoseEquations* equations) {
   const Matrix6d information = covariance.inverse();
+  const Vector6d weighted =
+      information * DifferenceLeft(state.ByChessboard(pose), state.T_camera_board[index]);
   equations->information.block<6, 6>(kBoardIndex, kBoardIndex) += information;
-  equations->pull.segment<6>(kBoardIndex) -=
-      information * DifferenceLeft(pose.T_camera_board, T_camera_board);
+  equations->pull.segment<6>(kBoardIndex) -= weighted;
+  const Eigen::Index n = state.num_lens;
+  if (n == 0) return;
+  const auto& S = pose.lens.board_by_lens;
+  const Eigen::Index lens = equations->pull.size() - n;
+  const Eigen::MatrixXd to_lens = information * S;
+  equations->information.block(kBoardIndex, lens, 6, n) -= to_lens;
+  equations->information.block(lens, kBoardIndex, n, 6) -= to_lens.transpose();
+  equations->information.block(lens, lens, n, n) += S.transpose() * to_lens + pose.lens.information;
+  equations->pull.tail(n) +=
+      S.transpose() * weighted + pose.lens.pull - pose.lens.information * state.faults_m.tail(n);
 }
 
 // The rows of a pose's unknowns that are shared.
@@ -135,8 +149,8 @@ PoseEquations EquationsOfReturns(const LikelihoodPose& pose,
                                  const LikelihoodState& state,
                                  std::size_t index,
                                  double range_sigma_m) {
-  const Eigen::Index num_rings = state.faults_m.size() - kFirstRing;
-  const Eigen::Index num_unknowns = kNumDense + num_rings;
+  const Eigen::Index num_rings = state.NumRings();
+  const Eigen::Index num_unknowns = kNumDense + num_rings + state.num_lens;
   Matrix312d J_plane;
   const Eigen::Vector3d plane = PlaneInLidar(state.At(index), &J_plane);
   const ReturnSums sums = SumReturns(pose, state, plane, range_sigma_m);
@@ -149,11 +163,12 @@ PoseEquations EquationsOfReturns(const LikelihoodPose& pose,
                           Eigen::VectorXd::Zero(num_unknowns)};
   equations.information.topLeftCorner<kNumDense, kNumDense>() =
       expand * sums.information * expand.transpose();
-  equations.information.topRightCorner(kNumDense, num_rings) = expand * sums.to_rings;
-  equations.information.bottomLeftCorner(num_rings, kNumDense) =
-      equations.information.topRightCorner(kNumDense, num_rings).transpose();
-  equations.information.diagonal().tail(num_rings) = sums.ring_information;
-  equations.pull << expand * sums.pull, sums.ring_pull;
+  equations.information.block(0, kNumDense, kNumDense, num_rings) = expand * sums.to_rings;
+  equations.information.block(kNumDense, 0, num_rings, kNumDense) =
+      equations.information.block(0, kNumDense, kNumDense, num_rings).transpose();
+  equations.information.diagonal().segment(kNumDense, num_rings) = sums.ring_information;
+  equations.pull.head(kNumDense) = expand * sums.pull;
+  equations.pull.segment(kNumDense, num_rings) = sums.ring_pull;
   return equations;
 }
 
@@ -168,8 +183,7 @@ PoseEquations EquationsOf(const LikelihoodPose& pose,
              state.LiftM(pose.outline),
              OutlineCovariance(pose, options, noise),
              &equations);
-  AddChessboard(
-      pose, state.T_camera_board[index], CameraCovariance(pose, options, noise), &equations);
+  AddChessboard(pose, state, index, CameraCovariance(pose, options, noise), &equations);
   return equations;
 }
 

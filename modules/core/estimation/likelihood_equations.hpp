@@ -11,7 +11,8 @@
 
 namespace voqcal {
 
-/// The shared unknowns: [extrinsic's perturbation (6); faults]. The faults in their order:
+/// The shared unknowns: [extrinsic's perturbation (6); faults]. The faults in their order, after
+/// the rings the lens' errors if they are estimated:
 constexpr Eigen::Index kExtrinsicSize = 6;
 constexpr Eigen::Index kCommon = 0;
 constexpr Eigen::Index kDarkStep = 1;
@@ -22,9 +23,16 @@ constexpr Eigen::Index kFirstRing = 4;
 /// Where the search stands.
 struct LikelihoodState {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  Eigen::VectorXd faults_m;  ///< The rise: metres a metre.
+  Eigen::VectorXd faults_m;   ///< The rise: metres a metre; the lens' errors: shares.
+  Eigen::Index num_lens = 0;  ///< How many of the faults are the lens' errors.
   std::vector<Eigen::Isometry3d> T_camera_board;
 
+  Eigen::Index NumRings() const { return faults_m.size() - kFirstRing - num_lens; }
+  /// Where the chessboard's pixels put the board, with the lens as it is.
+  Eigen::Isometry3d ByChessboard(const LikelihoodPose& pose) const {
+    if (num_lens == 0) return pose.T_camera_board;
+    return PerturbLeft(pose.T_camera_board, pose.lens.board_by_lens * faults_m.tail(num_lens));
+  }
   double OffsetM(const BoardReturn& seen) const {
     return faults_m[kCommon] + faults_m[kDarkStep] * seen.shade +
            faults_m[kFirstRing + static_cast<Eigen::Index>(seen.ring)];

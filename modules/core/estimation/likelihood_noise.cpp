@@ -21,8 +21,11 @@ double OutlineDisagreement(const LikelihoodPose& pose,
                            const LikelihoodOptions& options,
                            const LikelihoodNoise& noise) {
   Matrix312d J;
-  const Eigen::Vector3d difference = OutlineResidual(
-      {state.T_camera_lidar, pose.T_camera_board}, pose.outline, state.LiftM(pose.outline), &J);
+  const Eigen::Vector3d difference =
+      OutlineResidual({state.T_camera_lidar, state.ByChessboard(pose)},
+                      pose.outline,
+                      state.LiftM(pose.outline),
+                      &J);
   const Eigen::Matrix<double, 3, 6> J_board = J.rightCols<6>();
   const Eigen::Matrix3d expected =
       OutlineCovariance(pose, options, noise) +
@@ -38,7 +41,7 @@ double PlaneDisagreement(const LikelihoodPose& pose,
                          const LikelihoodOptions& options,
                          const LikelihoodNoise& noise) {
   LikelihoodState by_camera = state;
-  by_camera.T_camera_board[index] = pose.T_camera_board;
+  by_camera.T_camera_board[index] = state.ByChessboard(pose);
   const PoseEquations returns = EquationsOfReturns(pose, by_camera, index, noise.range_m);
   const Eigen::Matrix3d R = pose.T_camera_board.linear();
   Eigen::Matrix<double, 6, 3> plane = Eigen::Matrix<double, 6, 3>::Zero();

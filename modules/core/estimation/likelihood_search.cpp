@@ -36,15 +36,20 @@ LikelihoodSearch::LikelihoodSearch(std::vector<LikelihoodPose> poses,
                                    const Eigen::Isometry3d& T_camera_lidar_start,
                                    const LikelihoodOptions& options)
     : poses_(std::move(poses)), options_(options) {
-  const auto num_faults = kFirstRing + static_cast<Eigen::Index>(NumRings(poses_));
+  const auto num_lens = poses_.empty() ? 0 : poses_.front().lens.NumErrors();
+  const auto num_faults = kFirstRing + static_cast<Eigen::Index>(NumRings(poses_)) + num_lens;
+  state_.num_lens = num_lens;
   state_.T_camera_lidar = T_camera_lidar_start;
   state_.faults_m = Eigen::VectorXd::Zero(num_faults);
   for (const LikelihoodPose& pose : poses_) state_.T_camera_board.push_back(pose.T_camera_board);
   prior_information_ = FaultPriorInformation(options, num_faults);
+  prior_information_.tail(num_lens).setConstant(1.0 / (options.lens_error * options.lens_error));
   is_free_.assign(static_cast<std::size_t>(num_faults), true);
 }
 
-void LikelihoodSearch::StartFrom(const LidarBias& bias, const LikelihoodNoise& noise) {
+void LikelihoodSearch::StartFrom(const LidarBias& bias,
+                                 const LensEstimate& lens,
+                                 const LikelihoodNoise& noise) {
   const auto take = [this](Eigen::Index fault, const BiasEstimate& estimate) {
     is_free_[static_cast<std::size_t>(fault)] = estimate.is_observable;
     state_.faults_m[fault] = estimate.value_m;
@@ -54,8 +59,13 @@ void LikelihoodSearch::StartFrom(const LidarBias& bias, const LikelihoodNoise& n
   take(kDarkStep, bias.dark_step);
   take(kLift, bias.outline_lift);
   take(kRise, bias.outline_rise);
-  for (Eigen::Index i = kFirstRing; i < state_.faults_m.size(); ++i) {
-    take(i, bias.rings.at(static_cast<std::size_t>(i - kFirstRing)));
+  for (Eigen::Index i = 0; i < state_.NumRings(); ++i) {
+    take(kFirstRing + i, bias.rings.at(static_cast<std::size_t>(i)));
+  }
+  for (Eigen::Index i = 0; i < state_.num_lens; ++i) {
+    const Eigen::Index fault = kFirstRing + state_.NumRings() + i;
+    is_free_[static_cast<std::size_t>(fault)] = lens.is_observable[static_cast<std::size_t>(i)];
+    state_.faults_m[fault] = lens.errors[i];
   }
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "core/board/board_sample.hpp"
+#include "core/estimation/lens_terms.hpp"
 #include "core/estimation/lidar_bias.hpp"
 #include "core/geometry/rigid.hpp"
 
@@ -76,6 +77,7 @@ struct LikelihoodPose {
   std::array<Eigen::Vector3d, 4> corners_camera_m;  ///< Of the outline, by the chessboard.
   OutlineRays outline;
   std::vector<BoardReturn> returns;
+  LensTerms lens;  ///< Empty unless the lens is to be estimated.
 };
 
 /// @param T_camera_lidar  resolves the board's half-turn.

@@ -68,12 +68,15 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
                      const LikelihoodOptions& options) {
   const double trust = search.noise().camera_factor;
   const auto sensitivity = [&](const std::function<Vector6d(const LikelihoodPose&)>& board_shift) {
+    const Eigen::Index num_lens = search.state().num_lens;
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(equations.pull.size());
     for (std::size_t i = 0; i < equations.poses.size(); ++i) {
       const LikelihoodPose& pose = search.poses()[i];
-      const Matrix6d information = CameraCovariance(pose, options, search.noise()).inverse();
+      const Vector6d weighted =
+          CameraCovariance(pose, options, search.noise()).inverse() * board_shift(pose);
       const PoseShare& share = equations.poses[i];
-      pull -= share.to_board * (share.board_covariance * (information * board_shift(pose)));
+      pull -= share.to_board * (share.board_covariance * weighted);
+      if (num_lens > 0) pull.tail(num_lens) -= pose.lens.board_by_lens.transpose() * weighted;
     }
     return Vector6d((gain * pull).head<kExtrinsicSize>().cwiseAbs2());
   };
@@ -82,13 +85,16 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
         [&](const LikelihoodPose& pose) { return BoardShift(pose, camera, shift_px); });
   };
   const Eigen::Vector2d principal_point_px(camera.cx_px, camera.cy_px);
-  Vector6d variance = by_lens([&](const Eigen::Vector2d& pixel_px) -> Eigen::Vector2d {
-    return trust * options.focal_length_error * (pixel_px - principal_point_px);
-  });
-  for (int axis = 0; axis < 2; ++axis) {
-    variance += by_lens([&](const Eigen::Vector2d&) -> Eigen::Vector2d {
-      return trust * options.principal_point_error_px * Eigen::Vector2d::Unit(axis);
+  Vector6d variance = Vector6d::Zero();
+  if (search.state().num_lens == 0) {  // else the likelihood counts them
+    variance += by_lens([&](const Eigen::Vector2d& pixel_px) -> Eigen::Vector2d {
+      return trust * options.focal_length_error * (pixel_px - principal_point_px);
     });
+    for (int axis = 0; axis < 2; ++axis) {
+      variance += by_lens([&](const Eigen::Vector2d&) -> Eigen::Vector2d {
+        return trust * options.principal_point_error_px * Eigen::Vector2d::Unit(axis);
+      });
+    }
   }
   // A larger board is as much farther away.
   variance += sensitivity([&](const LikelihoodPose& pose) {

@@ -14,7 +14,7 @@ namespace voqcal {
 /// priors' share, which poses do not tell.
 /// by_model_errors: the extrinsic estimated again, in one step, with each of focal length,
 /// principal point (x, y) and size of the chessboard off by what `options` holds for plausible;
-/// root of the sum of squares.
+/// root of the sum of squares. With the lens estimated, of the size of the chessboard only.
 ///
 LikelihoodUncertainty UncertaintyOf(const LikelihoodSearch& search,
                                     const SharedEquations& equations,

@@ -94,6 +94,20 @@ double BoardDimensionErrorMm(const std::array<double, 4>& edge_lengths_m, const 
   return kMillimetresPerMetre * sum_m;
 }
 
+double MedianBoardDimensionErrorMm(const std::vector<BoardSample>& samples,
+                                   const BoardSpec& board) {
+  std::vector<double> errors_mm;
+  for (const BoardSample& sample : samples) {
+    const double error_mm = BoardDimensionErrorMm(sample.lidar.edge_lengths_m, board);
+    if (std::isfinite(error_mm)) errors_mm.push_back(error_mm);
+  }
+  if (errors_mm.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto upper = errors_mm.begin() + static_cast<std::ptrdiff_t>(errors_mm.size() / 2);
+  std::nth_element(errors_mm.begin(), upper, errors_mm.end());
+  if (errors_mm.size() % 2 == 1) return *upper;
+  return 0.5 * (*std::max_element(errors_mm.begin(), upper) + *upper);
+}
+
 double NormalConditionNumber(const Eigen::Vector3d& n0,
                              const Eigen::Vector3d& n1,
                              const Eigen::Vector3d& n2) {

@@ -22,6 +22,9 @@ struct VoqSet {
 /// measured.
 double BoardDimensionErrorMm(const std::array<double, 4>& edge_lengths_m, const BoardSpec& board);
 
+/// Its median over samples, those without it left out; NaN if none has it.
+double MedianBoardDimensionErrorMm(const std::vector<BoardSample>& samples, const BoardSpec& board);
+
 /// Eq. 2, kappa(N) = ||N^-1||_F ||N||_F of the matrix whose rows are the unit normals; infinite if
 /// singular. (The paper prints ||N^-1 N||; its text and its authors' code take the Frobenius
 /// condition number.)

@@ -98,7 +98,7 @@ TEST_F(RealSweeps, AllThirtyBoardsAreFoundWhereTheyAre) {
     normal_errors_rad.push_back(AngleBetween(f.board.pose.normal, f.row.lidar_normal));
   }
   EXPECT_LT(Median(normal_errors_rad), 0.026);  // 1.5 degrees: the table's own error
-  EXPECT_LT(Median(edge_errors_m), 0.025);
+  EXPECT_LT(Median(edge_errors_m), 0.020);
 }
 
 TEST_F(RealSweeps, WholeAndHandCroppedSweepsAgree) {

@@ -81,6 +81,20 @@ TEST(NormalConditionNumber, OfManyNormalsIsTheSameForThreeRepeated) {
   EXPECT_NEAR(NormalConditionNumber(twice), kappa, 1e-12 * kappa * kappa);
 }
 
+TEST(MedianBoardDimensionErrorMm, LeavesOutWhatWasNotMeasured) {
+  std::vector<BoardSample> samples(5);
+  const BoardSpec board = test::TestBoard();
+  for (std::size_t i = 0; i < 4; ++i) {
+    samples[i].lidar.edge_lengths_m = board.EdgeLengthsM();
+    samples[i].lidar.edge_lengths_m[i] += 0.001 * static_cast<double>(i + 1);
+  }
+  samples[4].lidar.edge_lengths_m[2] = NAN;
+  EXPECT_NEAR(MedianBoardDimensionErrorMm(samples, board), 2.5, 1e-9);
+  samples.erase(samples.begin());
+  EXPECT_NEAR(MedianBoardDimensionErrorMm(samples, board), 3.0, 1e-9);
+  EXPECT_TRUE(std::isnan(MedianBoardDimensionErrorMm({}, board)));
+}
+
 TEST(BoardDimensionErrorMm, SumsTheFourEdges) {
   EXPECT_NEAR(BoardDimensionErrorMm({0.62, 0.84, 0.605, 0.85}, test::TestBoard()), 25.0, 1e-9);
 }

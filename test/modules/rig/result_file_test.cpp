@@ -7,6 +7,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "rig/lidar_bias_yaml.hpp"
+#include "rig/rig.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace voqcal {
@@ -103,6 +104,55 @@ TEST(ToYaml, SaysWhatTheAssessmentFound) {
   EXPECT_FALSE(yaml["diagnosis"][0]["explained"]);  // does not apply
   EXPECT_EQ(yaml["not_judged"][0].as<std::string>(), "time offset: at rest");
   EXPECT_EQ(YAML::Load(ToYaml(SomeResult()))["diagnosis"].size(), 0U);
+}
+
+TEST(ToYaml, GivesTheCorrectedCameraAsARigFileHasIt) {
+  CalibrationResult result = SomeResult();
+  LensCorrection& lens = result.lens_correction;
+  lens.problem = "";
+  lens.camera.lens = LensModel::kEquidistant;
+  lens.camera.width_px = 1920;
+  lens.camera.height_px = 1208;
+  lens.camera.fx_px = 1180.0 + 1.0 / 3;
+  lens.camera.fy_px = 1181;
+  lens.camera.cx_px = 960;
+  lens.camera.cy_px = 600;
+  lens.camera.distortion = {-0.05, 0.01};
+  lens.errors.errors[kPrincipalPointX] = 1e-3;
+  lens.errors.standard_errors.setConstant(5e-4);
+  lens.errors.is_observable[kPrincipalPointX] = true;
+  lens.T_camera_lidar.translation() = Eigen::Vector3d(0.25, 0, 0);
+  lens.held_out.corner_mm.mean = 5.25;
+  const YAML::Node yaml = YAML::Load(ToYaml(result))["lens_correction"];
+  EXPECT_EQ(yaml["status"].as<std::string>(), "estimated");
+  EXPECT_DOUBLE_EQ(yaml["errors"]["principal_point_x_px"]["value"].as<double>(), 0.96);
+  EXPECT_DOUBLE_EQ(yaml["errors"]["radial_2_px"]["standard_error"].as<double>(), 0.48);
+  EXPECT_EQ(yaml["errors"]["radial_2_px"]["status"].as<std::string>(), "unobservable");
+  EXPECT_EQ(yaml["T_camera_lidar"]["matrix"][0][3].as<double>(), 0.25);
+  EXPECT_EQ(yaml["held_out"]["corner_mm"]["mean"].as<double>(), 5.25);
+  YAML::Node rig;
+  rig["rig"] = "corrected";
+  rig["board"]["width_m"] = 0.61;
+  rig["board"]["height_m"] = 0.85;
+  rig["board"]["square_m"] = 0.1;
+  rig["board"]["num_corners_x"] = 5;
+  rig["board"]["num_corners_y"] = 7;
+  rig["camera"] = yaml["camera"];
+  YAML::Emitter text;
+  text << rig;
+  const test::TemporaryFolder folder;
+  const Rig loaded = LoadRig(folder.Write("rig.yaml", text.c_str()));
+  EXPECT_EQ(loaded.camera.fx_px, lens.camera.fx_px);
+  EXPECT_EQ(loaded.camera.distortion, lens.camera.distortion);
+}
+
+TEST(ToYaml, SaysWhyThereIsNoLensCorrection) {
+  CalibrationResult result = SomeResult();
+  result.lens_correction.problem = "the samples do not tell it";
+  result.e_dim_mm = 19.5;
+  const YAML::Node yaml = YAML::Load(ToYaml(result));
+  EXPECT_EQ(yaml["lens_correction"]["reason"].as<std::string>(), "the samples do not tell it");
+  EXPECT_EQ(yaml["samples"]["e_dim_mm"].as<double>(), 19.5);
 }
 
 TEST(ReadLidarBias, ReadsWhatToYamlWrites) {

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/board/board_sample.hpp"
+#include "core/board/board_spec.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/camera/lens_errors.hpp"
+#include "core/geometry/rigid.hpp"
+
+namespace voqcal {
+
+/// What one chessboard says of the lens, to first order in its errors. With pixel errors
+///     e(p, l) = e0 + J p + L l
+/// of all corners by the board's pose p (left perturbation) and LensErrors l, the pose with the
+/// least squares moves by S l, S = -(J'J)^-1 J'L, and what is left of the corners' errors is
+///     e0 + (L + J S) l
+/// No rows or columns: lens errors are not asked for.
+struct LensTerms {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> board_by_lens;  ///< S.
+  Eigen::MatrixXd information;                             ///< Of l, by what is left...
+  Eigen::VectorXd pull;                                    ///< ...minus its gradient at l = 0.
+
+  Eigen::Index NumErrors() const { return pull.size(); }
+};
+
+/// @param corner_error_px  1 sigma of each corner in x and in y.
+/// @return zeros if the sample has no corners' pixels (features read from a table).
+LensTerms LensTermsOf(const BoardSample& sample,
+                      const BoardSpec& board,
+                      const CameraModel& camera,
+                      double corner_error_px);
+
+/// Where the camera sees the board if its intrinsics have these errors; its covariance stays.
+BoardPose CorrectedCameraPose(const BoardSample& sample,
+                              const BoardSpec& board,
+                              const CameraModel& camera,
+                              const LensErrors& errors);
+
+}  // namespace voqcal

@@ -1,0 +1,73 @@
+#include "core/assessment/lens_correction.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/camera/lens_errors.hpp"
+#include "support/synthetic_lens.hpp"
+#include "support/synthetic_sweeps.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+std::vector<BoardSample> SamplesThrough(const LensErrors& errors) {
+  test::SyntheticSamplesOptions scene;
+  scene.num_samples = 20;
+  scene.lidar_centre_noise_m = 0.002;
+  scene.lidar_rotation_noise_rad = 0.003;
+  auto samples = test::SamplesWithSweeps(scene, {0.02, 0.015, 0.008, 0.01});
+  test::SeeThrough(CorrectedCamera(test::TestCamera(), errors), test::TestCamera(), 0.2, &samples);
+  return samples;
+}
+
+struct Outcome {
+  BestExtrinsic given;
+  LensCorrection corrected;
+};
+
+Outcome Correct(const std::vector<BoardSample>& samples) {
+  AveragedExtrinsic average;
+  average.T_camera_lidar = test::TestExtrinsic();
+  Outcome outcome;
+  const auto all = test::Pointers(samples);
+  outcome.given = RefineBest(all, test::TestCamera(), average, RefinerOptions{});
+  outcome.corrected = CorrectLens(all,
+                                  test::TestBoard(),
+                                  test::TestCamera(),
+                                  outcome.given.T_camera_lidar,
+                                  outcome.given.held_out,
+                                  LikelihoodOptions{});
+  return outcome;
+}
+
+TEST(CorrectLens, LowersHeldOutErrorsOfAWrongLens) {
+  LensErrors errors;
+  errors << 0.006, 0.001, 0.004, -0.005, -0.008, 0.005;
+  const Outcome outcome = Correct(SamplesThrough(errors));
+  ASSERT_TRUE(outcome.corrected.IsUsable()) << outcome.corrected.problem;
+  EXPECT_THAT(outcome.corrected.held_out.poses, SizeIs(20));
+  EXPECT_LT(outcome.corrected.held_out.corner_mm.mean, outcome.given.held_out.corner_mm.mean);
+  const CameraModel truth = CorrectedCamera(test::TestCamera(), errors);
+  // Three standard errors of a shift of the principal point are 4 px.
+  EXPECT_NEAR(outcome.corrected.camera.cx_px, truth.cx_px, 4.0);
+  EXPECT_NEAR(outcome.corrected.camera.cy_px, truth.cy_px, 4.0);
+  EXPECT_TRUE(outcome.corrected.camera.Problems().empty());
+}
+
+TEST(CorrectLens, LeavesTheRightLensAlone) {
+  const Outcome outcome = Correct(SamplesThrough(LensErrors::Zero()));
+  EXPECT_FALSE(outcome.corrected.IsUsable());
+  EXPECT_THAT(outcome.corrected.problem, HasSubstr("hardly better"));
+}
+
+TEST(CorrectLens, SaysWhatItLacks) {
+  auto samples = SamplesThrough(LensErrors::Zero());
+  samples.front().camera.corners_px.clear();
+  EXPECT_THAT(Correct(samples).corrected.problem, HasSubstr("pixels"));
+}
+
+}  // namespace
+}  // namespace voqcal

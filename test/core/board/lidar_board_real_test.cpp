@@ -45,8 +45,9 @@ std::map<int, TableRow> LoadTable(const std::filesystem::path& path) {
 }
 
 double Median(std::vector<double> values) {
+  if (values.empty()) return NAN;
   std::sort(values.begin(), values.end());
-  return values.empty() ? NAN : values[values.size() / 2];
+  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
 }
 
 /// All that a sweep says, and the table's row of the same pose.

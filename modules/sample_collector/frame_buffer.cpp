@@ -22,4 +22,9 @@ const SensorFrame* FrameBuffer::Find(std::int64_t utime) const {
   return found == frames_.rend() ? nullptr : &*found;
 }
 
+std::optional<std::int64_t> FrameBuffer::NewestUtime() const {
+  if (frames_.empty()) return std::nullopt;
+  return frames_.back().utime;
+}
+
 }  // namespace voqcal

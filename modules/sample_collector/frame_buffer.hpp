@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 namespace voqcal {
@@ -23,6 +24,9 @@ class FrameBuffer {
 
   /// The latest frame of that capture time; null if there is none (any more).
   const SensorFrame* Find(std::int64_t utime) const;
+
+  /// Of the frame that came last; nothing if none did.
+  std::optional<std::int64_t> NewestUtime() const;
 
  private:
   std::size_t max_bytes_;

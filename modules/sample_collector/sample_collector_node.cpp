@@ -1,5 +1,6 @@
 #include "sample_collector/sample_collector_node.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -35,9 +36,13 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
   bus_.Subscribe<image_t>(
       channels_.camera_image, Queue::kEvery, [this](const image_t& m) { Keep(m, &images_); });
   bus_.Subscribe<lidar_board_t>(
-      channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& m) { OnBoard(m); });
+      channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& m) {
+        OnBoard(m, &newest_lidar_utime_);
+      });
   bus_.Subscribe<camera_board_t>(
-      channels_.camera_board, Queue::kEvery, [this](const camera_board_t& m) { OnBoard(m); });
+      channels_.camera_board, Queue::kEvery, [this](const camera_board_t& m) {
+        OnBoard(m, &newest_camera_utime_);
+      });
   bus_.Subscribe<command_t>(channels_.calib_command,
                             Queue::kEvery,
                             [this](const command_t& message) { OnCommand(message); });
@@ -57,7 +62,9 @@ bool SampleCollectorNode::Step() {
 void SampleCollectorNode::Republish() {
   // A stall of this process can pass for a silent second: only an empty queue shows that it was
   // one.
-  if (is_finish_requested_ && !has_new_frames_ && was_idle_) Finish();
+  const bool is_silent = !has_new_frames_ && was_idle_;
+  if (is_finish_requested_ && is_silent) Finish();
+  if (is_finish_requested_ && AreDetectorsPastFinish()) SayFinished();
   has_new_frames_ = false;
   was_idle_ = false;
   PublishSamples();
@@ -81,8 +88,22 @@ void SampleCollectorNode::AcceptWithScene(const BoardSample& sample) {
 }
 
 void SampleCollectorNode::Finish() {
-  is_finish_requested_ = false;
   Decide(picker_.Flush());
+  SayFinished();
+}
+
+void SampleCollectorNode::RequestFinish() {
+  if (is_finish_requested_) return;
+  is_finish_requested_ = true;
+  finish_utime_ = std::max(sweeps_.NewestUtime(), images_.NewestUtime());
+}
+
+bool SampleCollectorNode::AreDetectorsPastFinish() const {
+  return finish_utime_ && std::min(newest_lidar_utime_, newest_camera_utime_) > *finish_utime_;
+}
+
+void SampleCollectorNode::SayFinished() {
+  is_finish_requested_ = false;
   is_finished_ = true;
   Announce(samples().empty() ? 0 : samples().back().utime, "finished", 0, "");
   PublishSamples();
@@ -98,8 +119,9 @@ void SampleCollectorNode::Keep(const Message& message, FrameBuffer* frames) {
 
 // A message that contradicts itself is a frame without a board, and costs that frame only.
 template <typename BoardMessage>
-void SampleCollectorNode::OnBoard(const BoardMessage& message) {
+void SampleCollectorNode::OnBoard(const BoardMessage& message, std::int64_t* newest_utime) {
   has_new_frames_ = true;
+  *newest_utime = message.utime;
   decltype(SightingFromMessage(message)) sighting;
   try {
     sighting = SightingFromMessage(message);
@@ -116,7 +138,7 @@ void SampleCollectorNode::OnCommand(const command_t& message) {
   } else if (message.command == "discard") {
     Discard(message);
   } else if (message.command == "finish") {
-    is_finish_requested_ = true;
+    RequestFinish();
   } else if (message.command == "reset") {
     session_.Reset();
     log_sha256_ = session_.Sha256();

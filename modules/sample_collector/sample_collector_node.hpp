@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +36,8 @@ class SampleCollectorNode : public Module {
   void Accept(const BoardSample& sample) { Accept(sample, {}, ""); }
 
   /// No more frames will come: judges what waits and says so in CALIB_SAMPLES. The command "finish"
-  /// does the same once no frame has come for a second, since detectors may still be at work.
+  /// does the same once no frame has come for a second, since detectors may still be at work. Where
+  /// sensors go on, it is done once both detectors are past the frames that had come before it.
   void Finish();
 
   const std::vector<BoardSample>& samples() const { return session_.samples(); }
@@ -43,9 +46,13 @@ class SampleCollectorNode : public Module {
   template <typename Message>
   void Keep(const Message& message, FrameBuffer* frames);
   template <typename BoardMessage>
-  void OnBoard(const BoardMessage& message);
+  void OnBoard(const BoardMessage& message, std::int64_t* newest_utime);
   void OnCommand(const command_t& message);
   void Discard(const command_t& message);
+  void RequestFinish();
+  /// Both detectors are past what had come when "finish" was asked for.
+  bool AreDetectorsPastFinish() const;
+  void SayFinished();
   void Accept(const BoardSample& sample, const SampleScene& scene, const std::string& remark);
   /// With what was seen at its first frame, if both frames are at hand.
   void AcceptWithScene(const BoardSample& sample);
@@ -65,6 +72,9 @@ class SampleCollectorNode : public Module {
   std::string log_sha256_;
   std::int64_t event_seq_ = 0;
   bool is_finish_requested_ = false;
+  std::optional<std::int64_t> finish_utime_;  // of the newest frame when that was; if one had come
+  std::int64_t newest_lidar_utime_ = std::numeric_limits<std::int64_t>::min();   // of a board...
+  std::int64_t newest_camera_utime_ = std::numeric_limits<std::int64_t>::min();  // ...or miss
   bool is_finished_ = false;
   bool has_new_frames_ = false;  // since the last Republish
   bool was_idle_ = false;        // since the last Republish: no message waited

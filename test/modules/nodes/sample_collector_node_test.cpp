@@ -218,6 +218,23 @@ TEST_F(SampleCollectorNodeTest, FinishesOnlyOnceNoFrameHasComeForASecond) {
   EXPECT_EQ(node_->State(), "finished: 2 samples");
 }
 
+TEST_F(SampleCollectorNodeTest, FinishesWhileSensorsGoOnOnceDetectorsArePastIt) {
+  ShowStop(0, {0, 1, 2, 3});
+  const std::int64_t utime = test::StillFrames(samples_, 1).back().camera.utime;
+  image_t image{};
+  image.utime = utime;
+  test::Send(bus_.get(), rig_.channels.camera_image, image);
+  Command("finish");
+  ShowStop(1);        // detectors come up to that image, not past it
+  Command("finish");  // said again, it asks for nothing more
+  Republish();
+  EXPECT_FALSE(last().is_finished);
+  ShowStop(2);
+  Republish();
+  EXPECT_TRUE(last().is_finished);
+  EXPECT_EQ(node_->State(), "finished: 3 samples");
+}
+
 TEST_F(SampleCollectorNodeTest, FinishJudgesTheFramesThatWait) {
   auto frames = test::StillFrames(samples_, 0);
   frames.pop_back();  // nothing closes the third pair

@@ -9,11 +9,17 @@ namespace voqcal {
 
 using Clock = std::chrono::steady_clock;
 
+namespace {
+
+constexpr std::chrono::milliseconds kReadyPoll{10};
+
+}  // namespace
+
 CameraDriverNode::CameraDriverNode(const Rig& rig, Bus* bus)
     : channels_(rig.channels),
       camera_(rig.camera),
       bus_(*bus),
-      source_(MakeCameraSource(rig)),
+      source_(MakeCameraSource(rig, bus)),
       pacer_(rig.camera_driver.rate_hz),
       retry_(std::chrono::duration_cast<Clock::duration>(
           std::chrono::duration<double>(rig.camera_driver.retry_s))),
@@ -21,6 +27,10 @@ CameraDriverNode::CameraDriverNode(const Rig& rig, Bus* bus)
 
 bool CameraDriverNode::Step() {
   if (is_done_ || Clock::now() < next_) return false;
+  if (!source_->IsReady()) {
+    next_ = Clock::now() + kReadyPoll;
+    return false;
+  }
   std::optional<TimedImage> image = source_->Next();
   is_done_ = !image && source_->HasEnded();
   if (is_done_) return false;

@@ -7,6 +7,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "camera_driver/guided_camera_source.hpp"
 #include "camera_driver/video_source.hpp"
 #include "core/simulation/simulation.hpp"
 #include "messaging/encoded_image.hpp"
@@ -72,12 +73,13 @@ class SimulatedCameraSource : public CameraSource {
 
 }  // namespace
 
-std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig) {
+std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig, Bus* bus) {
   switch (rig.camera_driver.source) {
     case DriverSource::kFolder:
       RequireFolder(rig.camera_driver, rig.path.string() + ": camera_driver");
       return std::make_unique<FolderCameraSource>(rig.camera_driver);
     case DriverSource::kSimulator:
+      if (rig.simulation.follows_guidance) return std::make_unique<GuidedCameraSource>(rig, bus);
       return std::make_unique<SimulatedCameraSource>(rig);
     case DriverSource::kVideo:
       return MakeVideoSource(rig.camera_driver);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "messaging/bus.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {
@@ -20,6 +21,9 @@ struct TimedImage {
 class CameraSource {
  public:
   virtual ~CameraSource() = default;
+
+  /// False while it waits for other modules: it is not to be asked yet.
+  virtual bool IsReady() const { return true; }
 
   /// The next image; nothing if there is none now, or never will be.
   /// @throws std::runtime_error naming the file and the cause.
@@ -37,6 +41,7 @@ class CameraSource {
 
 /// The source that the rig file names. Frames of folders, files and the
 /// simulator count from kSyntheticEpochUtime.
-std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig);
+/// @param bus  for sources that listen; borrowed.
+std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig, Bus* bus);
 
 }  // namespace voqcal

@@ -226,6 +226,7 @@ std::string GuidanceJson(const next_pose_t& message) {
   json["tolerance"] = message.tolerance;
   json["min_range_m"] = message.min_range_m;
   json["max_range_m"] = message.max_range_m;
+  json["min_samples"] = message.min_samples;
   json["worst_error"] = message.worst_error;
   json["predicted_worst_error"] = message.predicted_worst_error;
   json["is_enough"] = message.is_enough != 0;

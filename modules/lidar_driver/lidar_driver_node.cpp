@@ -31,7 +31,7 @@ PacketListener PublisherOfPackets(const Rig& rig, Bus* bus) {
 LidarDriverNode::LidarDriverNode(const Rig& rig, Bus* bus)
     : channel_(rig.channels.lidar_points),
       bus_(*bus),
-      source_(MakeLidarSource(rig, PublisherOfPackets(rig, bus))),
+      source_(MakeLidarSource(rig, PublisherOfPackets(rig, bus), bus)),
       pacer_(rig.lidar_driver.rate_hz),
       next_(pacer_.Next()) {}
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/simulation/simulation.hpp"
+#include "lidar_driver/guided_lidar_source.hpp"
 #include "lidar_driver/packet_lidar_source.hpp"
 #include "rig/frame_folder.hpp"
 #include "rig/point_cloud_file.hpp"
@@ -55,12 +56,13 @@ class SimulatedLidarSource : public LidarSource {
 
 }  // namespace
 
-std::unique_ptr<LidarSource> MakeLidarSource(const Rig& rig, PacketListener on_packet) {
+std::unique_ptr<LidarSource> MakeLidarSource(const Rig& rig, PacketListener on_packet, Bus* bus) {
   switch (rig.lidar_driver.source) {
     case DriverSource::kFolder:
       RequireFolder(rig.lidar_driver, rig.path.string() + ": lidar_driver");
       return std::make_unique<FolderLidarSource>(rig.lidar_driver);
     case DriverSource::kSimulator:
+      if (rig.simulation.follows_guidance) return std::make_unique<GuidedLidarSource>(rig, bus);
       return std::make_unique<SimulatedLidarSource>(rig);
     case DriverSource::kVlp16:
     case DriverSource::kSpectrumScan:

@@ -9,6 +9,7 @@
 
 #include "core/lidar/point_cloud.hpp"
 #include "lidar_driver/packet_source.hpp"
+#include "messaging/bus.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {
@@ -53,6 +54,7 @@ using PacketListener = std::function<void(const HostPacket&)>;
 /// The source that the rig file names. Frames of folders and the simulator count from
 /// kSyntheticEpochUtime.
 /// @param on_packet  for sources that read a sensor's packets; may be empty.
-std::unique_ptr<LidarSource> MakeLidarSource(const Rig& rig, PacketListener on_packet);
+/// @param bus  for sources that listen; borrowed.
+std::unique_ptr<LidarSource> MakeLidarSource(const Rig& rig, PacketListener on_packet, Bus* bus);
 
 }  // namespace voqcal

@@ -36,16 +36,17 @@ void FillPose(const NextPose& next,
 }  // namespace
 
 next_pose_t ToMessage(const NextPose& next,
-                      const ErrorTolerance& tolerance,
+                      const GuidanceOptions& asked,
                       const BoardSpec& board,
                       const CameraModel& camera) {
   next_pose_t message{};
   message.problem = next.problem;
   message.advice = next.advice;
-  message.unit = ToString(tolerance.unit);
-  message.tolerance = tolerance.tolerance;
-  message.min_range_m = tolerance.min_range_m;
-  message.max_range_m = tolerance.max_range_m;
+  message.unit = ToString(asked.tolerance.unit);
+  message.tolerance = asked.tolerance.tolerance;
+  message.min_range_m = asked.tolerance.min_range_m;
+  message.max_range_m = asked.tolerance.max_range_m;
+  message.min_samples = asked.min_samples;
   message.worst_error = next.worst.error;
   message.is_enough = next.is_enough ? 1 : 0;
   message.worst_range_m = next.worst.range_m;

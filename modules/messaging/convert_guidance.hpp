@@ -7,7 +7,7 @@ namespace voqcal {
 
 /// utime and revision are left to the caller.
 next_pose_t ToMessage(const NextPose& next,
-                      const ErrorTolerance& tolerance,
+                      const GuidanceOptions& asked,
                       const BoardSpec& board,
                       const CameraModel& camera);
 

@@ -73,7 +73,7 @@ next_pose_t PoseGuideNode::Propose(Basis basis) const {
   }
   const NextPose next = ProposeNextPose(
       state, {rig_.board, rig_.camera, rig_.extrinsic_refiner.likelihood}, rig_.pose_guide);
-  next_pose_t message = ToMessage(next, rig_.pose_guide.tolerance, rig_.board, rig_.camera);
+  next_pose_t message = ToMessage(next, rig_.pose_guide, rig_.board, rig_.camera);
   StampMadeFrom(*samples_, &message);
   return message;
 }

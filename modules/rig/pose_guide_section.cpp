@@ -15,6 +15,8 @@ void ReadPoseGuide(YamlSection* top, GuidanceOptions* options) {
   section.Read("min_range_m", &tolerance->min_range_m);
   section.Read("max_range_m", &tolerance->max_range_m);
   section.AddProblems(tolerance->Problems());
+  section.Read("min_samples", &options->min_samples);
+  if (options->min_samples < 0) section.AddError("min_samples", "must not be negative");
   YamlSection hold = section.Section("hold");
   hold.Read("min_distance_m", &options->limits.min_distance_m);
   hold.Read("max_distance_m", &options->limits.max_distance_m);

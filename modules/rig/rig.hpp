@@ -44,6 +44,7 @@ struct Channels {
   std::string extrinsic_refined = "EXTRINSIC_REFINED";
   std::string calib_assessment = "CALIB_ASSESSMENT";
   std::string next_pose = "NEXT_POSE";
+  std::string simulated_board = "SIMULATED_BOARD";
   std::string module_status = "MODULE_STATUS";
   std::string camera_to_lidar = "CAMERA_TO_LIDAR";
 };

@@ -51,6 +51,7 @@ void ReadChannels(YamlSection* top, const std::string& prefix, Channels* channel
   read("extrinsic_refined", &channels->extrinsic_refined);
   read("calib_assessment", &channels->calib_assessment);
   read("next_pose", &channels->next_pose);
+  read("simulated_board", &channels->simulated_board);
   read("module_status", &channels->module_status);
   read("camera_to_lidar", &channels->camera_to_lidar);
   section.RefuseUnknownKeys();
@@ -127,6 +128,7 @@ void ReadSimulation(YamlSection* top, SimulationOptions* options) {
   YamlSection truth = section.Section("T_camera_lidar");
   ReadTransform(&truth, &options->T_camera_lidar);
   truth.RefuseUnknownKeys();
+  section.Read("follows_guidance", &options->follows_guidance);
   section.Read("num_poses", &options->num_poses);
   section.Read("hold_s", &options->hold_s);
   section.Read("move_s", &options->move_s);

@@ -20,6 +20,13 @@ Room EmptyHall() {
   return Room(Box{{-9.0, -9.0, -1.5}, {9.0, 9.0, 3.0}, Material::kWall}, Props{});
 }
 
+// People do not know what is best: as slanted as simulated sessions' boards are.
+PlacementLimits Reach(const GuidanceOptions& guidance) {
+  PlacementLimits reach = guidance.limits;
+  reach.max_incidence_rad = 55.0 * kRadPerDeg;
+  return reach;
+}
+
 class Session {
  public:
   Session(const GuidedSessionOptions& options,
@@ -31,11 +38,8 @@ class Session {
         T_truth_(options.simulation.T_camera_lidar),
         scene_(rig.camera, T_truth_, guidance.tolerance),
         lidar_(options.simulation, rig.board, EmptyHall()),
-        reach_(guidance.limits),
-        random_(options.seed) {
-    // People do not know what is best: as slanted as simulated sessions' boards are.
-    reach_.max_incidence_rad = 55.0 * kRadPerDeg;
-  }
+        reach_(Reach(guidance)),
+        random_(options.seed) {}
 
   GuidedStep Add() {
     samples_.push_back(NextSample());
@@ -54,11 +58,7 @@ class Session {
     }
     for (int trial = 0; trial < kNumTrials; ++trial) {
       const auto T_camera_board = asked ? Followed(asked->T_camera_board) : Anywhere();
-      if (!T_camera_board ||
-          !IsInView(
-              *T_camera_board, T_truth_, rig_.board, rig_.camera, guidance_.sensors, reach_)) {
-        continue;
-      }
+      if (!T_camera_board) continue;
       const auto sample = See(*T_camera_board);
       if (sample) return *sample;
     }
@@ -69,30 +69,21 @@ class Session {
     Vector6d error;
     error << options_.turn_error_rad / std::sqrt(3.0) * random_.NormalVector(),
         options_.place_error_m / std::sqrt(3.0) * random_.NormalVector();
-    return PerturbLeft(asked, error);
+    const Eigen::Isometry3d T_camera_board = PerturbLeft(asked, error);
+    if (!IsInView(T_camera_board, T_truth_, rig_.board, rig_.camera, guidance_.sensors, reach_)) {
+      return std::nullopt;
+    }
+    return T_camera_board;
   }
 
-  // As the simulated sessions' boards are: anywhere in the image, at any distance, tilted to 40
-  // degrees each way.
   std::optional<Eigen::Isometry3d> Anywhere() {
-    Placement placement;
-    placement.centre_px = {random_.Uniform(0, rig_.camera.width_px - 1),
-                           random_.Uniform(0, rig_.camera.height_px - 1)};
-    placement.distance_m =
-        random_.Uniform(guidance_.limits.min_distance_m, guidance_.limits.max_distance_m);
-    placement.yaw_rad = random_.Uniform(-40.0, 40.0) * kRadPerDeg;
-    placement.pitch_rad = random_.Uniform(-40.0, 40.0) * kRadPerDeg;
-    const double roll_rad =
-        random_.Uniform(-options_.max_random_roll_rad, options_.max_random_roll_rad);
-    auto pose = PoseOf(placement, rig_.camera, T_truth_.linear().col(2));
-    if (pose) pose->rotate(Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitZ()));
-    return pose;
+    return RandomHold(options_.max_random_roll_rad, T_truth_, rig_, guidance_, &random_);
   }
 
   std::optional<BoardSample> See(const Eigen::Isometry3d& T_camera_board) {
     constexpr double kWrongM = 0.1;  // what the consistency of pairs finds
     const Eigen::Isometry3d T_lidar_board = T_truth_.inverse() * T_camera_board;
-    const std::int64_t frame_us = 100000 * ++num_frames_;
+    const std::int64_t frame_us = std::int64_t{100000} * ++num_holds_;
     const auto found = DetectLidarBoard(
         lidar_.Sweep(T_lidar_board, frame_us), rig_.board, options_.lidar_board_detector);
     if (!found) return std::nullopt;
@@ -121,16 +112,18 @@ class Session {
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
     belief_.reset();
     covariance_.reset();
-    if (!VarietyProblem(Samples()).empty()) return {kUnknown, kUnknown};
+    if (!VarietyProblem(Samples()).empty()) return {num_holds_, kUnknown, kUnknown};
     Vector6d start_error;  // about what the VOQ average leaves
     start_error << 0.005, 0.003, -0.004, 0.005, -0.004, 0.006;
     const LikelihoodExtrinsic refined = RefineByLikelihood(
         Samples(), rig_.camera, PerturbLeft(T_truth_, start_error), rig_.likelihood);
-    if (!refined.IsUsable()) return {kUnknown, kUnknown};
+    if (!refined.IsUsable()) return {num_holds_, kUnknown, kUnknown};
     belief_ = {refined.T_camera_lidar, refined.bias, refined.noise};
     covariance_ = refined.uncertainty.covariance;
     const Vector6d error = DifferenceLeft(T_truth_, refined.T_camera_lidar);
-    return {scene_.Worst(*covariance_).error, scene_.Worst(error * error.transpose()).error};
+    return {num_holds_,
+            scene_.Worst(*covariance_).error,
+            scene_.Worst(error * error.transpose()).error};
   }
 
   const GuidedSessionOptions& options_;
@@ -141,13 +134,34 @@ class Session {
   LidarSimulator lidar_;
   PlacementLimits reach_;
   Random random_;
-  std::int64_t num_frames_ = 0;
+  int num_holds_ = 0;
   std::vector<BoardSample> samples_;
   std::optional<ExtrinsicBelief> belief_;
   std::optional<Matrix6d> covariance_;
 };
 
 }  // namespace
+
+std::optional<Eigen::Isometry3d> RandomHold(double max_roll_rad,
+                                            const Eigen::Isometry3d& T_camera_lidar,
+                                            const GuidedRig& rig,
+                                            const GuidanceOptions& guidance,
+                                            Random* random) {
+  constexpr double kMaxTiltRad = 40.0 * kRadPerDeg;
+  const PlacementLimits& limits = guidance.limits;
+  Placement placement;
+  placement.centre_px = {random->Uniform(0, rig.camera.width_px - 1),
+                         random->Uniform(0, rig.camera.height_px - 1)};
+  placement.distance_m = random->Uniform(limits.min_distance_m, limits.max_distance_m);
+  placement.yaw_rad = random->Uniform(-kMaxTiltRad, kMaxTiltRad);
+  placement.pitch_rad = random->Uniform(-kMaxTiltRad, kMaxTiltRad);
+  placement.turn_rad += random->Uniform(-max_roll_rad, max_roll_rad);
+  const auto pose = PoseOf(placement, rig.camera, T_camera_lidar.linear().col(2));
+  const bool is_seen =
+      pose &&
+      IsInView(*pose, T_camera_lidar, rig.board, rig.camera, guidance.sensors, Reach(guidance));
+  return is_seen ? pose : std::nullopt;
+}
 
 std::vector<GuidedStep> SimulateGuidedSession(const GuidedSessionOptions& options,
                                               const GuidedRig& rig,

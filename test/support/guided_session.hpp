@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "core/board/lidar_board.hpp"
 #include "core/guidance/next_pose.hpp"
 #include "core/simulation/simulation.hpp"
+#include "support/synthetic_samples.hpp"
 
 namespace voqcal::test {
 
@@ -24,9 +28,20 @@ struct GuidedSessionOptions {
 
 /// After so many poses as steps came before, and this one.
 struct GuidedStep {
+  int num_holds = 0;  ///< Of the board in both sensors' sight, those without a sample included.
   double predicted_error = 0.0;  ///< Worst in the scene, by the refined covariance; or infinite.
   double true_error = 0.0;       ///< Worst in the scene, in the tolerance's unit; or infinite.
 };
+
+/// A board held by a person who knows nothing: anywhere in the image, at any of the distances asked
+/// of guided ones, tilted to 40 degrees each way, and turned about its normal from a diamond by up
+/// to `max_roll_rad`. Nothing where it would be out of either sensor's view or slanted by more than
+/// 55 degrees, as the simulated sessions' boards are.
+std::optional<Eigen::Isometry3d> RandomHold(double max_roll_rad,
+                                            const Eigen::Isometry3d& T_camera_lidar,
+                                            const GuidedRig& rig,
+                                            const GuidanceOptions& guidance,
+                                            Random* random);
 
 std::vector<GuidedStep> SimulateGuidedSession(const GuidedSessionOptions& options,
                                               const GuidedRig& rig,

@@ -10,10 +10,14 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "core/geometry/rigid.hpp"
+#include "core/guidance/worst_error.hpp"
 #include "core/simulation/simulation.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
+#include "rig/atomic_file.hpp"
+#include "rig/result_file.hpp"
 #include "support/temporary_folder.hpp"
 #include "system/system_test.hpp"
 
@@ -29,7 +33,11 @@ std::string Script(const std::string& name) {
 
 class DashboardInBrowser : public ::testing::Test {
  protected:
-  ~DashboardInBrowser() override { test::Run({test::Tool("down"), "--session", session_}); }
+  ~DashboardInBrowser() override {
+    for (const std::string& session : {session_ + "/sensors", session_}) {
+      test::Run({test::Tool("down"), "--session", session});
+    }
+  }
 
   void Up(const std::string& rig_text, const std::vector<std::string>& flags) {
     rig_ = folder_.Write("rig.yaml", rig_text);
@@ -52,6 +60,45 @@ TEST_F(DashboardInBrowser, RunsASessionFromStartToExportByClicks) {
       test::Run({kWithNode, "node", Script("dashboard_session.mjs"), session_});
   if (outcome.status == kSkipped) GTEST_SKIP() << outcome.out;
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
+// The simulated board is held where the page asks, until it says that it is enough.
+TEST_F(DashboardInBrowser, GuidesASessionFromStartToEnough) {
+  constexpr double kToleranceMm = 5.0;
+  std::string rig_text =
+      test::Replaced(test::ShortRigText(), "follows_guidance: false", "follows_guidance: true");
+  rig_text = test::Replaced(rig_text, "num_poses: 8", "num_poses: 40");
+  rig_text = test::Replaced(
+      rig_text, "\n  tolerance: 5.0", "\n  tolerance: " + std::to_string(kToleranceMm));
+  const std::string readers =
+      "lidar_board_detector,camera_board_detector,sample_collector,voq_selector,"
+      "extrinsic_estimator,extrinsic_refiner,assessor,pose_guide,dashboard";
+  ASSERT_NO_FATAL_FAILURE(Up(rig_text, {"--record", "--only", readers}));
+  const test::Outcome outcome =
+      test::Run({kWithNode, "node", Script("dashboard_guided.mjs"), session_});
+  if (outcome.status == kSkipped) GTEST_SKIP() << outcome.out;
+  ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  std::cout << outcome.out;
+
+  const Rig rig = LoadRig(rig_);
+  const std::string result = session_ + "/extrinsic.yaml";
+  const ErrorScene scene(rig.camera, rig.simulation.T_camera_lidar, rig.pose_guide.tolerance);
+  const Vector6d error = DifferenceLeft(rig.simulation.T_camera_lidar, ReadExtrinsic(result));
+  // What was promised is an RMS: one session's error may well be larger.
+  EXPECT_LT(scene.Worst(error * error.transpose()).error, 3.0 * kToleranceMm);
+
+  // What was recorded gives the same result again.
+  test::Run({test::Tool("down"), "--session", session_});
+  const std::string offline = folder_.path() / "offline";
+  const test::Outcome again = test::Run({test::Program("calibrate"),
+                                         "--rig",
+                                         rig_,
+                                         "--log",
+                                         session_ + "/raw.lcm",
+                                         "--out",
+                                         offline});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(ReadWholeFile(offline + "/extrinsic.yaml"), ReadWholeFile(result));
 }
 
 /// Sensors faster than the page is shown: one image at 30 Hz and one sweep at 20 Hz, again and

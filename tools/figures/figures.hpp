@@ -10,6 +10,7 @@ void AddAccuracy(CLI::App* app);
 void AddConsistency(CLI::App* app);
 void AddCoverage(CLI::App* app);
 void AddGuidance(CLI::App* app);
+void AddGuidanceBound(CLI::App* app);
 void AddSubsets(CLI::App* app);
 
 void AddCameraDetection(CLI::App* app);

@@ -80,6 +80,20 @@ void PrintCurves(const Sessions (&kinds)[3]) {
   }
 }
 
+// A person who holds the board where no detector finds it has held it there all the same.
+void PrintHolds(const Sessions (&kinds)[3]) {
+  const auto holds_a_sample = [](const Sessions& sessions) {
+    double sum = 0.0;
+    for (const auto& steps : sessions) sum += steps.back().num_holds;
+    return sum / static_cast<double>(sessions.size() * sessions.front().size());
+  };
+  std::printf(
+      "holds in both sensors' sight for each sample: guided %.3f, random %.3f, diamonds %.3f\n",
+      holds_a_sample(kinds[0]),
+      holds_a_sample(kinds[1]),
+      holds_a_sample(kinds[2]));
+}
+
 // Poses needed; one more than there are if they did not do, and the ratio then is at most so large.
 void PrintNeeded(const Sessions (&kinds)[3]) {
   std::puts("poses needed (asked: guided at most 0.5 of random)");
@@ -117,6 +131,7 @@ void Print(const GuidanceArgs& args) {
               ToString(guidance.tolerance.unit).c_str(),
               args.num_runs);
   PrintCurves(kinds);
+  PrintHolds(kinds);
   PrintNeeded(kinds);
 }
 

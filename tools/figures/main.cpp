@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   voqcal::AddConsistency(&app);
   voqcal::AddCoverage(&app);
   voqcal::AddGuidance(&app);
+  voqcal::AddGuidanceBound(&app);
   voqcal::AddLidarDetection(&app);
   voqcal::AddSceneCheckPower(&app);
   voqcal::AddSubsets(&app);

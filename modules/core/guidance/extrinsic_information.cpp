@@ -78,10 +78,14 @@ Matrix6d ExtrinsicInformation::CovarianceOf(const Eigen::MatrixXd& information) 
 Matrix6d ExtrinsicInformation::Covariance() const { return CovarianceOf(information_); }
 
 Matrix6d ExtrinsicInformation::CovarianceWith(const BoardSample& expected) const {
+  return CovarianceOf(information_ + InformationOf(expected));
+}
+
+Eigen::MatrixXd ExtrinsicInformation::InformationOf(const BoardSample& expected) const {
   LikelihoodNoise noise = belief_.noise;
   noise.range_m /= std::sqrt(static_cast<double>(kExpectedThinning));
   // Without faults: an expected sample has none.
-  return CovarianceOf(information_ + InformationOf({&expected}, LidarBias{}, noise));
+  return InformationOf({&expected}, LidarBias{}, noise);
 }
 
 }  // namespace voqcal

@@ -37,6 +37,12 @@ class ExtrinsicInformation {
   /// The same once there is a further sample as ExpectedSample makes it.
   Matrix6d CovarianceWith(const BoardSample& expected) const;
 
+  /// What is known of [extrinsic (6); faults], priors included...
+  const Eigen::MatrixXd& information() const { return information_; }
+
+  /// ...and what a further sample would add.
+  Eigen::MatrixXd InformationOf(const BoardSample& expected) const;
+
  private:
   Eigen::MatrixXd InformationOf(const std::vector<const BoardSample*>& samples,
                                 const LidarBias& bias,

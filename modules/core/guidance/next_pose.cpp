@@ -246,6 +246,7 @@ std::vector<std::string> GuidanceOptions::Problems() const {
   problems.Add(tolerance.Problems());
   problems.Add(sensors.Problems());
   problems.Add(limits.Problems());
+  problems.Require(min_samples >= 0, "min_samples must not be negative", min_samples);
   return problems.lines();
 }
 
@@ -258,7 +259,8 @@ NextPose ProposeNextPose(const GuidanceState& state,
   NextPose next;
   next.worst = search.WorstNow();
   if (state.samples.empty()) next.worst.error = std::numeric_limits<double>::infinity();
-  next.is_enough = state.covariance && next.worst.error <= options.tolerance.tolerance;
+  next.is_enough = static_cast<int>(state.samples.size()) >= options.min_samples &&
+                   state.covariance && next.worst.error <= options.tolerance.tolerance;
   if (next.is_enough) next.advice = EnoughWords(next.worst, options.tolerance);
   const std::vector<Candidate> starts = search.Grid();
   const Candidate best = search.Best(starts);

@@ -21,6 +21,8 @@ namespace voqcal {
 /// What is asked of the extrinsic, and how its samples are expected to be.
 struct GuidanceOptions {
   ErrorTolerance tolerance;
+  /// Fewer are not enough, however certain they seem: what they have in common they cannot show.
+  int min_samples = 8;
   SensorExpectation sensors;
   PlacementLimits limits;
 
@@ -49,8 +51,8 @@ struct NextPose {
   std::string problem;  ///< Why no pose is asked for; what describes one is then meaningless.
   /// By the published covariance; without one, by what the samples tell. Infinite without any.
   WorstError worst;
-  /// The published covariance keeps the tolerance. The samples' information alone does not do: it
-  /// knows nothing of errors that the likelihood does not model.
+  /// There are min_samples, and the published covariance keeps the tolerance. The samples'
+  /// information alone does not do: it knows nothing of errors that the likelihood does not model.
   bool is_enough = false;
   /// After a sample of the pose; NaN if there is none.
   double predicted_worst_error = std::numeric_limits<double>::quiet_NaN();

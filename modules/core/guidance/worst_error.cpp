@@ -67,4 +67,10 @@ WorstError ErrorScene::Worst(const Matrix6d& covariance) const {
   return error;
 }
 
+std::vector<Matrix6d> ErrorScene::Forms() const {
+  std::vector<Matrix6d> forms;
+  for (const Point& point : points_) forms.push_back(point.form);
+  return forms;
+}
+
 }  // namespace voqcal

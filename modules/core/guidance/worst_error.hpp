@@ -50,6 +50,9 @@ class ErrorScene {
   /// @param covariance  of [rotation_rad; translation_m] of T_camera_lidar, left (camera) side.
   WorstError Worst(const Matrix6d& covariance) const;
 
+  /// Of each point: trace(form * covariance) is its mean square, in the unit.
+  std::vector<Matrix6d> Forms() const;
+
  private:
   struct Point {
     Matrix6d form = Matrix6d::Zero();  // trace(form * covariance): the mean square, in the unit

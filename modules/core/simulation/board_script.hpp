@@ -6,21 +6,15 @@
 
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
+#include "core/simulation/board_path.hpp"
 #include "core/simulation/room.hpp"
 #include "core/simulation/simulation.hpp"
 
 namespace voqcal {
 
-/// One place of the board, by the six numbers that the script interpolates:
-/// [azimuth, elevation (rad), distance (m) of its centre from the lidar; yaw, pitch, roll (rad)
-/// from facing the lidar upright].
-using Placement = Eigen::Matrix<double, 6, 1>;
-
 /// Where the board is at which time: a list of stops, and smooth moves between them.
 ///
-/// Stops are spread over the camera's width and over the distances. At each of them the whole board
-/// is in the image, in the lidar's field of view, hidden by nothing and clear of
-/// walls and furniture.
+/// Stops are spread over the camera's width and over the distances, and each is good (StopChecks).
 class BoardScript {
  public:
   /// @throws std::invalid_argument if no place in the room satisfies all this.
@@ -42,7 +36,7 @@ class BoardScript {
 
   double hold_s_;
   double move_s_;
-  std::vector<Placement> stops_;
+  std::vector<BoardPlace> stops_;
 };
 
 }  // namespace voqcal

@@ -16,6 +16,7 @@ enum class NoiseUse : std::uint64_t {
   kPixelRow,
   kClutter,
   kPointing,
+  kHolds,
 };
 
 /// Random numbers without state: each is a hash of (seed, use, frame time, index), so it does not

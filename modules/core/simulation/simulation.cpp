@@ -9,6 +9,7 @@
 #include "core/simulation/clutter.hpp"
 #include "core/simulation/lidar_simulator.hpp"
 #include "core/simulation/room.hpp"
+#include "core/simulation/stop_checks.hpp"
 
 namespace voqcal {
 namespace {
@@ -90,11 +91,13 @@ std::vector<std::string> SimulationOptions::Problems() const {
 struct Simulation::Impl {
   Impl(const SimulationOptions& options, const BoardSpec& board, const CameraModel& camera)
       : room(RoomOf(Checked(options, board, camera), board)),
+        checks(options, board, camera, room),
         script(options, board, camera, room),
         lidar(options, board, room),
         camera_view(options, board, camera, room) {}
 
   Room room;
+  StopChecks checks;
   BoardScript script;
   LidarSimulator lidar;
   CameraSimulator camera_view;
@@ -115,12 +118,20 @@ Eigen::Isometry3d Simulation::T_lidar_board(double time_s) const {
 
 bool Simulation::IsStill(double time_s) const { return impl_->script.IsStill(time_s); }
 
-PointCloud Simulation::Sweep(double time_s) const {
-  return impl_->lidar.Sweep(T_lidar_board(time_s), Microseconds(time_s));
+PointCloud Simulation::Sweep(double time_s) const { return Sweep(time_s, T_lidar_board(time_s)); }
+
+cv::Mat Simulation::Image(double time_s) const { return Image(time_s, T_lidar_board(time_s)); }
+
+PointCloud Simulation::Sweep(double time_s, const Eigen::Isometry3d& T_lidar_board) const {
+  return impl_->lidar.Sweep(T_lidar_board, Microseconds(time_s));
 }
 
-cv::Mat Simulation::Image(double time_s) const {
-  return impl_->camera_view.Render(T_lidar_board(time_s), Microseconds(time_s));
+cv::Mat Simulation::Image(double time_s, const Eigen::Isometry3d& T_lidar_board) const {
+  return impl_->camera_view.Render(T_lidar_board, Microseconds(time_s));
+}
+
+bool Simulation::CanRestAt(const Eigen::Isometry3d& T_lidar_board) const {
+  return impl_->checks.IsGood(T_lidar_board);
 }
 
 }  // namespace voqcal

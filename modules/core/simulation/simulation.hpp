@@ -19,9 +19,11 @@ namespace voqcal {
 struct SimulationOptions {
   std::uint32_t seed = 1;
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();  ///< The truth.
-  int num_poses = 40;                                                ///< Stops of the board.
+  int num_poses = 40;   ///< Stops of the board; where it follows the guidance, at most.
   double hold_s = 1.0;  ///< How long the board is still at each stop.
   double move_s = 0.5;  ///< How long it moves between stops.
+  /// Instead of the script a simulated person holds it where the guidance asks for (GuidedBoard).
+  bool follows_guidance = false;
   double min_distance_m = 1.5;
   double max_distance_m = 4.5;
   // Room.
@@ -74,6 +76,13 @@ class Simulation {
 
   /// The image of an instant: 8-bit BGR, with lens distortion, blur and noise.
   cv::Mat Image(double time_s) const;
+
+  /// The same with the board elsewhere than in the script.
+  PointCloud Sweep(double time_s, const Eigen::Isometry3d& T_lidar_board) const;
+  cv::Mat Image(double time_s, const Eigen::Isometry3d& T_lidar_board) const;
+
+  /// Whether the board would be whole in the view of both sensors, in the room and unhidden.
+  bool CanRestAt(const Eigen::Isometry3d& T_lidar_board) const;
 
  private:
   struct Impl;

@@ -125,6 +125,15 @@ TEST(ProposeNextPose, SaysEnoughWhenTheToleranceIsMet) {
   EXPECT_EQ(next.problem, "");  // one more would still help: its pose is there
 }
 
+TEST(ProposeNextPose, NeverSaysEnoughOfFewerSamplesThanAreAsked) {
+  const std::vector<BoardSample> samples = Samples(8);
+  GuidanceOptions options;
+  options.tolerance.tolerance = 1000.0;
+  EXPECT_TRUE(Propose(samples, options).is_enough);
+  options.min_samples = 9;
+  EXPECT_FALSE(Propose(samples, options).is_enough);
+}
+
 // The same 1 sigmas, but nothing of an error in one parameter is made up for by another.
 TEST(ProposeNextPose, JudgesEnoughByThePublishedCovarianceItself) {
   const std::vector<BoardSample> samples = Samples(8);

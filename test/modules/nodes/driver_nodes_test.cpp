@@ -9,9 +9,13 @@
 #include "lidar_driver/lidar_driver_node.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
+#include "messaging/convert_result.hpp"
+#include "messaging/convert_simulation.hpp"
 #include "modules/nodes/node_test.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_cameras.hpp"
+#include "voqcal/next_pose_t.hpp"
+#include "voqcal/simulated_board_t.hpp"
 
 namespace voqcal {
 namespace {
@@ -65,6 +69,7 @@ class DriverNodesTest : public ::testing::Test {
   Bus bus_{"memq://"};
   test::Inbox<pointcloud2_t> clouds_{&bus_, rig_.channels.lidar_points};
   test::Inbox<image_t> images_{&bus_, rig_.channels.camera_image};
+  test::Inbox<simulated_board_t> boards_{&bus_, rig_.channels.simulated_board};
   test::Inbox<camera_info_t> infos_{&bus_, rig_.channels.camera_info};
 };
 
@@ -149,6 +154,53 @@ TEST_F(DriverNodesTest, NameAnImageThatIsNone) {
   const auto image = folder_.Write("pose1.png", "no image at all");
   CameraDriverNode node(rig_, &bus_);
   EXPECT_THAT(test::ErrorOf([&] { RunToTheEnd(&node, &bus_); }), HasSubstr(image.string()));
+}
+
+// The lidar driver decides where the board is; the camera driver waits for that.
+TEST_F(DriverNodesTest, BothSimulatorsFollowTheGuidanceAlike) {
+  Simulate();
+  rig_.simulation.follows_guidance = true;
+  rig_.simulation.num_poses = 3;
+  rig_.simulation.move_s = 0.2;
+  LidarDriverNode lidar(rig_, &bus_);
+  CameraDriverNode camera(rig_, &bus_);
+  EXPECT_EQ(camera.State(), "waiting for the simulated lidar");
+  camera.Step();
+  EXPECT_THAT(images_.messages, SizeIs(0));
+
+  const Simulation simulation(rig_.simulation, rig_.board, rig_.camera);
+  next_pose_t asked{};
+  asked.samples_revision = 1;
+  asked.T_camera_board = ToMessage(rig_.simulation.T_camera_lidar * simulation.T_lidar_board(0.4));
+  bus_.Publish(rig_.channels.next_pose, asked);
+  asked.samples_revision = 2;
+  asked.is_enough = 1;
+  while (!lidar.IsDone() || !camera.IsDone()) {
+    for (Module* driver : {static_cast<Module*>(&lidar), static_cast<Module*>(&camera)}) {
+      if (driver->NextStep() <= std::chrono::steady_clock::now()) driver->Step();
+    }
+    test::HandleAll(&bus_);
+    if (clouds_.messages.size() == 8) bus_.Publish(rig_.channels.next_pose, asked);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_FALSE(boards_.messages.empty());
+  const simulated_board_t& board = boards_.messages.back();
+  ASSERT_EQ(board.num_stops, 2);
+  ASSERT_THAT(images_.messages, SizeIs(clouds_.messages.size()));
+  const auto stops = StopsFromMessage(board, kSyntheticEpochUtime);
+  const std::size_t last = clouds_.messages.size() - 1;
+  const double time_s = 0.1 * static_cast<double>(last);
+  EXPECT_EQ(images_.messages[last].utime, clouds_.messages[last].utime);
+  const Eigen::Isometry3d truth = PoseAt(time_s, stops, rig_.simulation);
+  EXPECT_GT((truth.translation() - simulation.T_lidar_board(0.0).translation()).norm(), 0.01);
+  EXPECT_EQ(FromMessage(clouds_.messages[last]).points.size(),
+            simulation.Sweep(time_s, truth).points.size());
+  std::vector<std::uint8_t> jpeg;
+  cv::imencode(".jpg",
+               simulation.Image(time_s, truth),
+               jpeg,
+               {cv::IMWRITE_JPEG_QUALITY, rig_.camera_driver.jpeg_quality});
+  EXPECT_EQ(images_.messages[last].data, jpeg);
 }
 
 TEST_F(DriverNodesTest, BothSimulatorsShowOneWorldAtSensorTimes) {

@@ -106,7 +106,7 @@ TEST_F(PoseGuideTest, GoesByTheRefinedExtrinsicOfTheSameSamples) {
 }
 
 TEST_F(PoseGuideTest, GoesByTheAverageWhereThereIsNoRefiner) {
-  SendSamples(test::NoisySamples(6), 6);
+  SendSamples(test::NoisySamples(8), 8);
   Step(&selector_);
   Step(&estimator_);
   Step(&guide_);

@@ -4,14 +4,15 @@ import { byId, element, number, setText } from "./dom.ts";
 import type { Check, Events, Guidance, Modules, Result, Sample, Samples } from "./protocol.ts";
 
 export function showGuidance(guidance: Guidance): void {
-  const { unit, tolerance, min_range_m, max_range_m, worst_error, predicted_worst_error } = guidance;
+  const { unit, tolerance, min_range_m, max_range_m, worst_error, predicted_worst_error, min_samples } = guidance;
   const advice = guidance.advice || guidance.problem;
   setText("advice", advice.charAt(0).toUpperCase() + advice.slice(1));
   byId("guidance").dataset.state = guidance.is_enough ? "enough" : "more";
   const where = `between ${min_range_m} and ${max_range_m} m`;
   const known = worst_error !== null;
   const now = known
-    ? `Expected error at worst ${number(worst_error, 1, unit)} ${where}; wanted ${number(tolerance, 1, unit)}.`
+    ? `Expected error at worst ${number(worst_error, 1, unit)} ${where}; wanted ${number(tolerance, 1, unit)}` +
+      (worst_error <= tolerance ? `, by at least ${min_samples} samples.` : ".")
     : `Wanted: at most ${number(tolerance, 1, unit)} of error ${where}.`;
   const next = guidance.is_enough || predicted_worst_error === null || !known
     ? ""

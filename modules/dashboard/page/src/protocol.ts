@@ -69,6 +69,7 @@ export interface Guidance {
   tolerance: number;
   min_range_m: number;
   max_range_m: number;
+  min_samples: number;
   worst_error: number | null;
   predicted_worst_error: number | null;
   is_enough: boolean;

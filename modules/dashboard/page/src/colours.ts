@@ -14,15 +14,34 @@ function hue(share: number): number {
   return 250 * share;
 }
 
-const STEPS = Array.from({ length: NUM_STEPS + 1 }, (_, i) => `hsl(${hue(i / NUM_STEPS)} 95% 55%)`);
-
-export function rangeColour(range_m: number): string {
-  return STEPS[Math.round(NUM_STEPS * rangeShare(range_m))]!;
+/** Of a hue in degrees, bright and nearly full. */
+function rgb(hue: number): [number, number, number] {
+  const [lightness, chroma] = [0.55, 0.95 * 0.45];
+  const part = (shift: number) => {
+    const k = (shift + hue / 30) % 12;
+    return lightness - chroma * Math.max(-1, Math.min(k - 3, 9 - k, 1));
+  };
+  return [part(0), part(8), part(4)];
 }
 
-/** Hue 0 to 1, for three.js. */
-export function rangeHue(range_m: number): number {
-  return hue(rangeShare(range_m)) / 360;
+const STEPS = Array.from({ length: NUM_STEPS + 1 }, (_, i) => rgb(hue(i / NUM_STEPS)));
+const PIXELS = Uint32Array.from(STEPS, ([red, green, blue]) => {
+  const byte = (share: number) => Math.round(255 * share);
+  return (255 << 24) | (byte(blue) << 16) | (byte(green) << 8) | byte(red);
+});
+
+/** Red, green and blue, 0 to 1. */
+export function rangeColour(range_m: number): readonly [number, number, number] {
+  return STEPS[stepOf(range_m)]!;
+}
+
+/** As ImageData holds it on little-endian machines, which all with a browser are: alpha, blue, green, red. */
+export function rangePixel(range_m: number): number {
+  return PIXELS[stepOf(range_m)]!;
+}
+
+function stepOf(range_m: number): number {
+  return Math.round(NUM_STEPS * rangeShare(range_m));
 }
 
 const probe = document.createElement("i");

@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { rangeHue, themeColour } from "./colours.ts";
+import { rangeColour, themeColour } from "./colours.ts";
 import type { CloudFrame, Guidance, LidarBoard, Point3, Samples } from "./protocol.ts";
 
 const UP = new THREE.Vector3(0, 0, 1);
@@ -22,6 +22,7 @@ export class SceneView {
   private readonly samples = new THREE.Group();
   private readonly ghost = new THREE.Group();
   private isAsked = false;
+  private isInSight = false;
   private drawnAt = 0;
 
   constructor(private readonly holder: HTMLElement) {
@@ -42,6 +43,10 @@ export class SceneView {
     this.controls.addEventListener("change", () => this.draw(0));
     this.lookAlong();
     new ResizeObserver(() => this.resize()).observe(holder);
+    new IntersectionObserver((entries) => {
+      this.isInSight = entries.at(-1)!.isIntersecting;
+      this.draw(0);
+    }).observe(holder);
   }
 
   /** From behind and above the lidar, along its x axis, where cameras usually look. */
@@ -55,10 +60,9 @@ export class SceneView {
   showCloud(cloud: CloudFrame): void {
     const { positions_m } = cloud;
     const colours = new Float32Array(positions_m.length);
-    const colour = new THREE.Color();
     for (let i = 0; i < positions_m.length; i += 3) {
       const range_m = Math.hypot(positions_m[i]!, positions_m[i + 1]!, positions_m[i + 2]!);
-      colour.setHSL(rangeHue(range_m), 0.9, 0.5).toArray(colours, i);
+      colours.set(rangeColour(range_m), i);
     }
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(positions_m, 3));
@@ -108,7 +112,7 @@ export class SceneView {
   }
 
   private draw(minPeriodMs = MIN_PERIOD_MS): void {
-    if (this.isAsked) return;
+    if (this.isAsked || !this.isInSight) return;
     this.isAsked = true;
     const wait = Math.max(0, this.drawnAt + minPeriodMs - performance.now());
     setTimeout(() => requestAnimationFrame(() => this.drawNow()), wait);

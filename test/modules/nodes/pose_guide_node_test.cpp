@@ -106,7 +106,7 @@ TEST_F(PoseGuideTest, GoesByTheRefinedExtrinsicOfTheSameSamples) {
 }
 
 TEST_F(PoseGuideTest, GoesByTheAverageWhereThereIsNoRefiner) {
-  SendSamples(test::NoisySamples(8), 8);
+  SendSamples(test::NoisySamples(6), 6);
   Step(&selector_);
   Step(&estimator_);
   Step(&guide_);
@@ -121,7 +121,7 @@ TEST_F(PoseGuideTest, EndsUpTheSameHoweverTheExtrinsicsArrive) {
   rig_.pose_guide.tolerance.tolerance = 1000.0;
   PoseGuideNode both_at_once(rig_, &bus_);
   PoseGuideNode one_by_one(rig_, &bus_);
-  SendSamples(test::NoisySamples(6), 6);
+  SendSamples(test::NoisySamples(8), 8);
   Step(&selector_);
   Step(&estimator_);
   Step(&one_by_one);

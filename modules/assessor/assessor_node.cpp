@@ -56,14 +56,9 @@ AssessorNode::AssessorNode(const Rig& rig, Bus* bus, const std::filesystem::path
     throw std::runtime_error(session_folder_.string() +
                              ": cannot make the session's folder: " + error.message());
   }
-  bus_.Subscribe<samples_t>(
-      rig_.channels.calib_samples, Queue::kState, [this](const samples_t& m) { samples_ = m; });
-  bus_.Subscribe<extrinsic_averaged_t>(rig_.channels.extrinsic_averaged,
-                                       Queue::kState,
-                                       [this](const extrinsic_averaged_t& m) { averaged_ = m; });
-  bus_.Subscribe<extrinsic_refined_t>(rig_.channels.extrinsic_refined,
-                                      Queue::kState,
-                                      [this](const extrinsic_refined_t& m) { refined_ = m; });
+  bus_.Keep(rig_.channels.calib_samples, &samples_);
+  bus_.Keep(rig_.channels.extrinsic_averaged, &averaged_);
+  bus_.Keep(rig_.channels.extrinsic_refined, &refined_);
 }
 
 std::string AssessorNode::State() const {

@@ -9,10 +9,8 @@
 namespace voqcal {
 
 ExtrinsicEstimatorNode::ExtrinsicEstimatorNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
-  bus_.Subscribe<samples_t>(
-      rig_.channels.calib_samples, Queue::kState, [this](const samples_t& m) { samples_ = m; });
-  bus_.Subscribe<voq_sets_t>(
-      rig_.channels.voq_sets, Queue::kState, [this](const voq_sets_t& m) { sets_ = m; });
+  bus_.Keep(rig_.channels.calib_samples, &samples_);
+  bus_.Keep(rig_.channels.voq_sets, &sets_);
 }
 
 std::string ExtrinsicEstimatorNode::State() const {

@@ -9,11 +9,8 @@
 namespace voqcal {
 
 ExtrinsicRefinerNode::ExtrinsicRefinerNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
-  bus_.Subscribe<samples_t>(
-      rig_.channels.calib_samples, Queue::kState, [this](const samples_t& m) { samples_ = m; });
-  bus_.Subscribe<extrinsic_averaged_t>(rig_.channels.extrinsic_averaged,
-                                       Queue::kState,
-                                       [this](const extrinsic_averaged_t& m) { averaged_ = m; });
+  bus_.Keep(rig_.channels.calib_samples, &samples_);
+  bus_.Keep(rig_.channels.extrinsic_averaged, &averaged_);
 }
 
 std::string ExtrinsicRefinerNode::State() const {

@@ -57,6 +57,14 @@ class Bus {
                  Queue queue,
                  std::function<void(const Message&)> handler);
 
+  /// Keeps the newest message of a channel of state in `newest`, which must live as long as
+  /// messages are handled.
+  template <typename Message>
+  void Keep(const std::string& channel, std::optional<Message>* newest) {
+    Subscribe<Message>(
+        channel, Queue::kState, [newest](const Message& message) { *newest = message; });
+  }
+
   /// Counts a failure (and warns of the first) instead of throwing: the next second's message
   /// repeats all state.
   template <typename Message>

@@ -15,14 +15,9 @@ constexpr std::int32_t kLeastForAnExtrinsic = 3;  // samples
 }  // namespace
 
 PoseGuideNode::PoseGuideNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
-  bus_.Subscribe<samples_t>(
-      rig_.channels.calib_samples, Queue::kState, [this](const samples_t& m) { samples_ = m; });
-  bus_.Subscribe<extrinsic_averaged_t>(rig_.channels.extrinsic_averaged,
-                                       Queue::kState,
-                                       [this](const extrinsic_averaged_t& m) { averaged_ = m; });
-  bus_.Subscribe<extrinsic_refined_t>(rig_.channels.extrinsic_refined,
-                                      Queue::kState,
-                                      [this](const extrinsic_refined_t& m) { refined_ = m; });
+  bus_.Keep(rig_.channels.calib_samples, &samples_);
+  bus_.Keep(rig_.channels.extrinsic_averaged, &averaged_);
+  bus_.Keep(rig_.channels.extrinsic_refined, &refined_);
 }
 
 std::string PoseGuideNode::State() const {

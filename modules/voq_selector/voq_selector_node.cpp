@@ -30,8 +30,7 @@ void AddVerdicts(const std::vector<BoardSample>& samples,
 }  // namespace
 
 VoqSelectorNode::VoqSelectorNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
-  bus_.Subscribe<samples_t>(
-      rig_.channels.calib_samples, Queue::kState, [this](const samples_t& m) { samples_ = m; });
+  bus_.Keep(rig_.channels.calib_samples, &samples_);
 }
 
 std::string VoqSelectorNode::State() const {

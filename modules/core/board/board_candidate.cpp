@@ -126,8 +126,17 @@ bool Finish(const PointCloud& cloud_lidar_m, Measurement* m) {
   return m->board_hits.size() >= kMinBoardHits;
 }
 
+/// Whether the rays meet the plane at less than 20 degrees: then scan lines are three times as far
+/// apart on it, and offsets between them tilt and stretch what is seen. Floors and tables are seen
+/// so.
+bool IsSeenFlat(const Measurement& m) {
+  constexpr double kMinSine = 0.34;
+  const Eigen::Vector3d ray = TransformOf(m.frame, m.outline.pose).translation().normalized();
+  return -ray.dot(m.frame.plane.normal) < kMinSine;
+}
+
 Agreement AgreementOf(const Measurement& m) {
-  return Compare(m.view.Outline(), m.model, m.outline.pose);
+  return Compare(m.view.Outline(), m.view.BlockedM(), m.model, m.outline.pose);
 }
 
 /// Of [rotation_rad; translation_m], left side. The outline gives the shift in the plane and the
@@ -229,9 +238,10 @@ Expected<LidarBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
     return Because(LidarBoardMiss::kSizeMismatch);
   const std::array<OutlineEdge, 4> edges = MeasureEdges(outline_beams, m.model, m.outline.pose);
   if (auto open = OpenSide(m, beams, edges, agreement, 1.0)) return *open;
-  if (auto screened = ScreenedSide(m)) return *screened;
+  if (IsSeenFlat(m)) return Because(LidarBoardMiss::kFlat);
+  if (auto unproven = UnprovenSide(m)) return *unproven;
   const std::array<double, 4> lengths_m = EdgeLengthsM(edges, m.model);
-  if (!AreLengthsRight(lengths_m, edges, board.EdgeLengthsM()))
+  if (!HasRightSize(m, edges, lengths_m, board.EdgeLengthsM()))
     return Because(LidarBoardMiss::kSizeMismatch);
   if (IsLoose(m, options.max_corner_sigma_m)) return Because(LidarBoardMiss::kLoose);
   if (auto bent = Bend(m, cloud_lidar_m, options.max_bend_m)) return *bent;

@@ -92,10 +92,38 @@ std::optional<NoLidarBoard> OpenSide(const Measurement& m,
                       SideOf(m, *edge)};
 }
 
-std::optional<NoLidarBoard> ScreenedSide(const Measurement& m) {
-  const auto edge = ScreenedEdge(m.view.Outline(), m.view.BlockedM(), m.model, m.outline.pose);
-  if (!edge) return {};
-  return NoLidarBoard{LidarBoardMiss::kHidden, SideOf(m, *edge)};
+std::optional<NoLidarBoard> UnprovenSide(const Measurement& m) {
+  constexpr double kNearM = 0.15;
+  constexpr double kFarM = 0.4;  // scan lines may be so far apart
+  constexpr int kMinBeams = 3;   // fewer are stray
+  constexpr int kMinPartsShown = 2;
+  const auto look = [&m](double past_m) {
+    return LookPastEdges(m.view.Outline(), m.view.BlockedM(), m.model, m.outline.pose, past_m);
+  };
+  const std::array<PastEdge, 4> near = look(kNearM);
+  const std::array<PastEdge, 4> far = look(kFarM);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool is_near_seen = near[i].num_misses + near[i].num_blocked > 0;
+    const PastEdge& past = is_near_seen ? near[i] : far[i];
+    if (past.num_blocked >= kMinBeams && past.num_blocked > past.num_misses &&
+        past.num_parts_shown < kMinPartsShown) {
+      return NoLidarBoard{LidarBoardMiss::kHidden, SideOf(m, i)};
+    }
+    if (!is_near_seen && 2 * past.num_parts_hit >= PastEdge::kNumParts) {
+      return NoLidarBoard{LidarBoardMiss::kSizeMismatch, {}};
+    }
+  }
+  return {};
+}
+
+bool HasRightSize(const Measurement& m,
+                  const std::array<OutlineEdge, 4>& edges,
+                  const std::array<double, 4>& measured_m,
+                  const std::array<double, 4>& true_m) {
+  if (AreLengthsRight(measured_m, true_m)) return true;
+  std::array<bool, 4> is_closed{};
+  std::transform(edges.begin(), edges.end(), is_closed.begin(), IsClosed);
+  return !HasRivalSize(m.view.Outline(), m.model, m.outline, is_closed);
 }
 
 std::optional<NoLidarBoard> Bend(const Measurement& m,
@@ -114,7 +142,7 @@ std::optional<NoLidarBoard> Bend(const Measurement& m,
 }
 
 bool IsLoose(const Measurement& m, double max_sigma_m) {
-  constexpr double kMayTurn = 0.25;  // of it: with less, no board was ever found turned
+  constexpr double kMayTurn = 0.15;  // of it: with less, no board was ever found turned
   const double sigma_m = CornerSigmaM(m.outline, m.model);
   if (sigma_m > max_sigma_m) return true;
   return sigma_m > kMayTurn * max_sigma_m && HasTurnedRival(m.view.Outline(), m.model, m.outline);

@@ -20,8 +20,16 @@ std::optional<NoLidarBoard> OpenSide(const Measurement& m,
                                      const Agreement& agreement,
                                      double slack);
 
-/// The side past which most of what is seen stands before the plane; nothing if there is none.
-std::optional<NoLidarBoard> ScreenedSide(const Measurement& m);
+/// The side past which what is seen does not prove that the board ends there: it may go on behind
+/// what stands before the plane, or the next scan line still meets the plane; nothing if there is
+/// none.
+std::optional<NoLidarBoard> UnprovenSide(const Measurement& m);
+
+/// Whether the edges are as long as the board's, as far as the beams tell.
+bool HasRightSize(const Measurement& m,
+                  const std::array<OutlineEdge, 4>& edges,
+                  const std::array<double, 4>& measured_m,
+                  const std::array<double, 4>& true_m);
 
 /// That the board is certainly bent, and by how much; nothing if it may be flat.
 std::optional<NoLidarBoard> Bend(const Measurement& m,

@@ -46,7 +46,7 @@ PatchSearchOptions PatchesOf(const BoardSpec& board) {
   const double longer_m = std::max(board.width_m, board.height_m);
   search.voxel_m = shorter_m / 4;
   search.spread_m = Eigen::Vector2d(shorter_m, longer_m) / std::sqrt(12.0);  // of a full rectangle
-  search.max_radius_m = std::hypot(shorter_m, longer_m);
+  search.max_radius_m = std::hypot(shorter_m, longer_m) / 2 + search.voxel_m;
   search.min_points = kMinPoints;
   return search;
 }
@@ -129,22 +129,24 @@ Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
     const BoardSpec& board,
     const LidarBoardOptions& options,
     const LidarBackground* background) {
-  constexpr std::size_t kMaxPatches = 12;  // bounds the time; a room has two or three
-  constexpr double kAsGood = 0.8;          // share of the best likelihood that a rival may reach
+  // Bounds on the time: a room has two or three, and the board is not always among the likest.
+  constexpr std::size_t kMaxPatches = 12;
+  constexpr std::size_t kMaxPatchesUntilFound = 40;
+  constexpr double kAsGood = 0.8;  // share of the best likelihood that a rival may reach
   RequireUsable("DetectLidarBoard: board", board.Problems());
   RequireUsable("DetectLidarBoard: options", options.Problems());
 
   const std::vector<Eigen::Vector3d> points_m = SearchedPoints(cloud_lidar_m, options);
   if (points_m.size() < kMinPoints) return NoLidarBoard{LidarBoardMiss::kTooFewPoints, {}};
 
-  std::vector<PlanarPatch> patches = FindPlanarPatches(points_m, PatchesOf(board));
-  if (patches.size() > kMaxPatches) patches.resize(kMaxPatches);
+  const std::vector<PlanarPatch> patches = FindPlanarPatches(points_m, PatchesOf(board));
   const BeamIndex index(cloud_lidar_m, options.min_range_m);
   std::vector<LidarBoard> found;
   NoLidarBoard closest{LidarBoardMiss::kNoPlane, {}};
-  for (const PlanarPatch& patch : patches) {
-    if (IsPartOfAny(patch, found)) continue;
-    auto measured = MeasureBoard(patch, index, cloud_lidar_m, board, options);
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (i >= (found.empty() ? kMaxPatchesUntilFound : kMaxPatches)) break;
+    if (IsPartOfAny(patches[i], found)) continue;
+    auto measured = MeasureBoard(patches[i], index, cloud_lidar_m, board, options);
     if (measured)
       found.push_back(std::move(*measured));
     else if (measured.error().miss > closest.miss)

@@ -12,6 +12,8 @@ std::string ToString(LidarBoardMiss miss) {
       return "no plane of the board's size";
     case LidarBoardMiss::kSizeMismatch:
       return "size mismatch";
+    case LidarBoardMiss::kFlat:
+      return "seen at too flat an angle";
     case LidarBoardMiss::kCutOff:
       return "outline open: the field of view ends";
     case LidarBoardMiss::kHidden:

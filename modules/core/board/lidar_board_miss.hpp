@@ -9,6 +9,7 @@ enum class LidarBoardMiss {
   kTooFewPoints,  ///< The cloud (or the region of interest) is all but empty.
   kNoPlane,       ///< No planar patch of about the board's size.
   kSizeMismatch,  ///< Planar patches, but none whose outline fits the board's size.
+  kFlat,          ///< A patch fits, but its plane is seen at too flat an angle.
   kCutOff,        ///< A patch fits, but past one side there are no beams: the field of view ends.
   kHidden,        ///< A patch fits, but something stands before one side of it.
   kLoose,         ///< A patch fits, but so few beams tell its outline that it could lie elsewhere.

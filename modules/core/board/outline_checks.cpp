@@ -13,28 +13,39 @@ bool Agreement::IsBoardLike(double slack) const {
 }
 
 Agreement Compare(const std::vector<OutlineBeam>& beams,
+                  const std::vector<Eigen::Vector2d>& blocked_m,
                   const OutlineModel& model,
                   const RectanglePose& pose) {
   constexpr double kMarginM = 0.03;  // partly hit beams prove nothing
   constexpr double kBorderM = 0.20;  // how far around the board its surroundings are looked at
   constexpr std::size_t kNumFields = 4;
   constexpr double kFieldShare = 1.0 / (kNumFields * kNumFields);
-  std::array<std::array<bool, kNumFields>, kNumFields> is_covered{};
+  enum class Field { kUnseen, kEmpty, kHit };
+  std::array<std::array<Field, kNumFields>, kNumFields> fields{};
   std::array<double, 2> inside{};
   std::array<double, 2> outside{};
   const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
-  for (const OutlineBeam& beam : beams) {
-    const Eigen::Vector2d q_m = T_rectangle_plane * beam.position_m;
-    const double out_m =
-        std::max(std::abs(q_m.x()) - model.width_m / 2, std::abs(q_m.y()) - model.height_m / 2);
-    if (out_m < -kMarginM) inside[beam.is_hit] += 1;
-    if (out_m > kMarginM && out_m < kBorderM) outside[beam.is_hit] += 1;
-    if (out_m >= 0 || !beam.is_hit) continue;
-    const auto field = [](double q, double size_m) {
+  const auto mark = [&](const Eigen::Vector2d& q_m, Field field) {
+    const auto along = [](double q, double size_m) {
       return static_cast<std::size_t>(
           std::clamp((q / size_m + 0.5) * kNumFields, 0.0, kNumFields - 1.0));
     };
-    is_covered[field(q_m.x(), model.width_m)][field(q_m.y(), model.height_m)] = true;
+    Field& seen = fields[along(q_m.x(), model.width_m)][along(q_m.y(), model.height_m)];
+    seen = std::max(seen, field);
+  };
+  const auto outside_m_of = [&model](const Eigen::Vector2d& q_m) {
+    return std::max(std::abs(q_m.x()) - model.width_m / 2, std::abs(q_m.y()) - model.height_m / 2);
+  };
+  for (const OutlineBeam& beam : beams) {
+    const Eigen::Vector2d q_m = T_rectangle_plane * beam.position_m;
+    const double out_m = outside_m_of(q_m);
+    if (out_m < -kMarginM) inside[beam.is_hit] += 1;
+    if (out_m > kMarginM && out_m < kBorderM) outside[beam.is_hit] += 1;
+    if (out_m < 0) mark(q_m, beam.is_hit ? Field::kHit : Field::kEmpty);
+  }
+  for (const Eigen::Vector2d& p_m : blocked_m) {
+    const Eigen::Vector2d q_m = T_rectangle_plane * p_m;
+    if (outside_m_of(q_m) < 0) mark(q_m, Field::kEmpty);
   }
   Agreement agreement;
   agreement.hits_inside = inside[1] / std::max(inside[0] + inside[1], 1.0);
@@ -46,9 +57,18 @@ Agreement Compare(const std::vector<OutlineBeam>& beams,
   const double num_expected =
       (inside[0] + inside[1]) * (area_m2(kBorderM) - area_m2(kMarginM)) / area_m2(-kMarginM);
   agreement.hits_outside = outside[1] / std::max({outside[0] + outside[1], num_expected, 1.0});
+  // Scan lines may be farther apart than a field is wide: what no beam meets between two hits is
+  // taken for the board's.
+  const auto is_covered = [&fields](std::size_t x, std::size_t y) {
+    if (fields[x][y] != Field::kUnseen) return fields[x][y] == Field::kHit;
+    const auto is_hit = [&fields](std::size_t i, std::size_t j) {
+      return i < kNumFields && j < kNumFields && fields[i][j] == Field::kHit;
+    };
+    return (is_hit(x - 1, y) && is_hit(x + 1, y)) || (is_hit(x, y - 1) && is_hit(x, y + 1));
+  };
   for (std::size_t x = 0; x < kNumFields; ++x) {
     for (std::size_t y = 0; y < kNumFields; ++y) {
-      if (!is_covered[x][y]) continue;
+      if (!is_covered(x, y)) continue;
       agreement.covered += kFieldShare;
       agreement.covered_half[x < kNumFields / 2 ? 3 : 1] += 2 * kFieldShare;
       agreement.covered_half[y < kNumFields / 2 ? 0 : 2] += 2 * kFieldShare;
@@ -105,63 +125,78 @@ std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
   return static_cast<std::size_t>(std::min_element(half.begin(), half.end()) - half.begin());
 }
 
-bool AreLengthsRight(const std::array<double, 4>& measured_m,
-                     const std::array<OutlineEdge, 4>& edges,
-                     const std::array<double, 4>& true_m) {
-  struct Tolerance {
-    double open_m;
-    double num_sigmas;
-    double largest_m;
-
-    bool Holds(double error_m, double sigma_m) const {
-      return std::abs(error_m) <= std::min(open_m + num_sigmas * sigma_m, largest_m);
-    }
-  };
-  constexpr Tolerance kOfOne{0.03, 4.0, 0.15};
-  constexpr Tolerance kOfMean{0.03, 1.5, 0.08};
+bool AreLengthsRight(const std::array<double, 4>& measured_m, const std::array<double, 4>& true_m) {
+  constexpr double kMaxOfOneM = 0.03;
+  constexpr double kMaxOfMeanM = 0.02;
   for (std::size_t i = 0; i < 2; ++i) {
-    // Edge i and the one opposite reach from the edge before to the edge after.
-    const double sigma_m =
-        std::hypot(edges[(i + 3) % 4].offset_sigma_m, edges[i + 1].offset_sigma_m);
     const double error_m = measured_m[i] - true_m[i];
     const double opposite_error_m = measured_m[i + 2] - true_m[i + 2];
-    if (!kOfOne.Holds(error_m, sigma_m) || !kOfOne.Holds(opposite_error_m, sigma_m) ||
-        !kOfMean.Holds((error_m + opposite_error_m) / 2, sigma_m)) {
+    if (std::abs(error_m) > kMaxOfOneM || std::abs(opposite_error_m) > kMaxOfOneM ||
+        std::abs(error_m + opposite_error_m) > 2 * kMaxOfMeanM) {
       return false;
     }
   }
   return true;
 }
 
-std::optional<std::size_t> ScreenedEdge(const std::vector<OutlineBeam>& beams,
-                                        const std::vector<Eigen::Vector2d>& blocked_m,
-                                        const OutlineModel& model,
-                                        const RectanglePose& pose) {
-  constexpr double kPastM = 0.15;
-  constexpr int kMinBlocked = 3;  // fewer are stray
+std::array<PastEdge, 4> LookPastEdges(const std::vector<OutlineBeam>& beams,
+                                      const std::vector<Eigen::Vector2d>& blocked_m,
+                                      const OutlineModel& model,
+                                      const RectanglePose& pose,
+                                      double past_m) {
+  constexpr double kMarginM = 0.03;  // nearer, beams may be partly of the board
+  struct Part {
+    int num_hits = 0;
+    int num_misses = 0;
+    int num_blocked = 0;
+  };
+  std::array<std::array<Part, PastEdge::kNumParts>, 4> parts{};
+  std::array<PastEdge, 4> past{};
   const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
   const Eigen::Array2d half_m(model.width_m / 2, model.height_m / 2);
-  // The edge just past which a place is; none for the corners and for what is inside or far.
-  const auto edge_before = [&](const Eigen::Vector2d& p_m) -> std::optional<std::size_t> {
+  // The edge just past which a place is, and the part of it; none for the corners and for what is
+  // inside or far.
+  struct Place {
+    std::size_t edge;
+    std::size_t part;
+  };
+  const auto place_of = [&](const Eigen::Vector2d& p_m) -> std::optional<Place> {
     const Eigen::Vector2d q_m = T_rectangle_plane * p_m;
     const Eigen::Array2d out_m = q_m.array().abs() - half_m;
-    if ((out_m > 0).all() || (out_m <= 0).all() || out_m.maxCoeff() > kPastM) return {};
-    if (out_m.x() > 0) return q_m.x() > 0 ? 1 : 3;
-    return q_m.y() > 0 ? 2 : 0;
+    if ((out_m > 0).all() || (out_m <= 0).all() || out_m.maxCoeff() > past_m) return {};
+    const bool is_beside = out_m.x() > 0;
+    const double along = is_beside ? q_m.y() / half_m.y() : q_m.x() / half_m.x();
+    const std::size_t edge = is_beside ? (q_m.x() > 0 ? 1 : 3) : (q_m.y() > 0 ? 2 : 0);
+    const double part = (along + 1.0) / 2.0 * PastEdge::kNumParts;
+    return Place{edge, static_cast<std::size_t>(std::min(part, PastEdge::kNumParts - 1.0))};
   };
-  std::array<int, 4> num_blocked{};
-  std::array<int, 4> num_misses{};
+  const auto is_clear = [&](const Eigen::Vector2d& p_m) {
+    const Eigen::Vector2d q_m = T_rectangle_plane * p_m;
+    return (q_m.array().abs() - half_m).maxCoeff() > kMarginM;
+  };
   for (const Eigen::Vector2d& p_m : blocked_m) {
-    if (const auto edge = edge_before(p_m)) ++num_blocked[*edge];
+    const auto place = place_of(p_m);
+    if (!place) continue;
+    ++past[place->edge].num_blocked;
+    ++parts[place->edge][place->part].num_blocked;
   }
   for (const OutlineBeam& beam : beams) {
-    if (beam.is_hit) continue;
-    if (const auto edge = edge_before(beam.position_m)) ++num_misses[*edge];
+    const auto place = place_of(beam.position_m);
+    if (!place) continue;
+    if (beam.is_hit) {
+      if (is_clear(beam.position_m)) ++parts[place->edge][place->part].num_hits;
+      continue;
+    }
+    ++past[place->edge].num_misses;
+    ++parts[place->edge][place->part].num_misses;
   }
   for (std::size_t i = 0; i < 4; ++i) {
-    if (num_blocked[i] >= kMinBlocked && num_blocked[i] > num_misses[i]) return i;
+    for (const Part& part : parts[i]) {
+      if (part.num_misses > part.num_blocked) ++past[i].num_parts_shown;
+      if (part.num_hits > part.num_misses) ++past[i].num_parts_hit;
+    }
   }
-  return {};
+  return past;
 }
 
 bool IsHidden(const std::vector<Eigen::Vector2d>& blocked_m,

@@ -14,7 +14,8 @@ namespace voqcal {
 struct Agreement {
   double hits_inside = 0.0;   ///< Share of hits among the beams well inside...
   double hits_outside = 0.0;  ///< ...and among those in a border around it.
-  double covered = 0.0;       ///< Share of the rectangle's 4 x 4 fields with a hit...
+  /// Share of the rectangle's 4 x 4 fields with a hit, or without any beam between two hits...
+  double covered = 0.0;
   /// ...and of the half towards each edge, in BoardSpec's order.
   std::array<double, 4> covered_half{};
 
@@ -22,7 +23,9 @@ struct Agreement {
   bool IsBoardLike(double slack = 1.0) const;
 };
 
+/// @param blocked_m  Where beams that end before the plane would have met it.
 Agreement Compare(const std::vector<OutlineBeam>& beams,
+                  const std::vector<Eigen::Vector2d>& blocked_m,
                   const OutlineModel& model,
                   const RectanglePose& pose);
 
@@ -45,22 +48,28 @@ std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
                                     double max_short_m,
                                     double slack = 1.0);
 
-/// Whether the edges, measured freely, are as long as they should be: each to within 30 mm (what
-/// spill, thickness and single scan lines leave open) and four standard errors, but never 150 mm;
-/// two opposite ones, which tilted lines lengthen and shorten, in the mean to within 30 mm and one
-/// and a half, but never 80 mm. In halls full of crates and doors, of a thousand boards each way of
-/// scanning, looser limits take more of these for the board, and tighter ones lose more boards
-/// (`voqcal_figures lidar-detection`).
-bool AreLengthsRight(const std::array<double, 4>& measured_m,
-                     const std::array<OutlineEdge, 4>& edges,
-                     const std::array<double, 4>& true_m);
+/// Whether the edges, measured freely, are as long as they should be: each to within 30 mm and two
+/// opposite ones, which tilted lines lengthen and shorten, in the mean to within 20 mm. That is
+/// what spill, thickness and single scan lines leave open; where few beams tell the edges they may
+/// be farther off on a board too (HasRivalSize).
+bool AreLengthsRight(const std::array<double, 4>& measured_m, const std::array<double, 4>& true_m);
 
-/// The edge past which more beams end in front of the plane than behind it: there the board may go
-/// on, behind whatever stands before it.
-std::optional<std::size_t> ScreenedEdge(const std::vector<OutlineBeam>& beams,
-                                        const std::vector<Eigen::Vector2d>& blocked_m,
-                                        const OutlineModel& model,
-                                        const RectanglePose& pose);
+/// What the beams say that meet the plane just past an edge.
+struct PastEdge {
+  static constexpr int kNumParts = 8;
+
+  int num_misses = 0;       ///< The board has ended.
+  int num_blocked = 0;      ///< Something stands before it: the board may go on behind it.
+  int num_parts_shown = 0;  ///< Of the edge's eight: where more beams miss than are blocked...
+  int num_parts_hit = 0;    ///< ...and where more hit than miss: the plane goes on.
+};
+
+/// Past each edge (in BoardSpec's order), up to `past_m` from it.
+std::array<PastEdge, 4> LookPastEdges(const std::vector<OutlineBeam>& beams,
+                                      const std::vector<Eigen::Vector2d>& blocked_m,
+                                      const OutlineModel& model,
+                                      const RectanglePose& pose,
+                                      double past_m);
 
 /// Whether something stands before the half of the rectangle towards `edge`, or just past it.
 bool IsHidden(const std::vector<Eigen::Vector2d>& blocked_m,

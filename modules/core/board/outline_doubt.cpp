@@ -136,4 +136,26 @@ bool HasTurnedRival(const std::vector<OutlineBeam>& beams,
   return false;
 }
 
+bool HasRivalSize(const std::vector<OutlineBeam>& beams,
+                  const OutlineModel& model,
+                  const OutlineFit& best,
+                  const std::array<bool, 4>& is_closed) {
+  constexpr std::array<double, 5> kOffM = {0.0, -0.06, 0.06, -0.12, 0.12};
+  constexpr double kBetter = 4.0;  // ln 50
+  for (const double wider_m : kOffM) {
+    for (const double higher_m : kOffM) {
+      if (wider_m == 0.0 && higher_m == 0.0) continue;
+      if (wider_m > 0.0 && !(is_closed[1] && is_closed[3])) continue;
+      if (higher_m > 0.0 && !(is_closed[0] && is_closed[2])) continue;
+      OutlineModel other = model;
+      other.width_m += wider_m;
+      other.height_m += higher_m;
+      const OutlineFit rough = SharpenOutline(beams, other, best.pose, SearchBlurM(model) / 2);
+      const OutlineFit rival = RefineOutline(beams, other, rough.pose);
+      if (rival.log_likelihood > best.log_likelihood + kBetter) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace voqcal

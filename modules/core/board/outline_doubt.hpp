@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/board/outline_fit.hpp"
@@ -23,5 +24,16 @@ OutlineFit SettleOutline(const std::vector<OutlineBeam>& beams,
 bool HasTurnedRival(const std::vector<OutlineBeam>& beams,
                     const OutlineModel& model,
                     const OutlineFit& best);
+
+/// Whether a rectangle that is 60 or 120 mm wider or narrower, higher or lower, or both, explains
+/// the beams better than `best` does, by a likelihood ratio of 50: then it is a thing of another
+/// size.
+///
+/// @param is_closed  Whether beams miss past each edge (BoardSpec's order). Without them the hits
+///     next to the edge alone would favour a larger rectangle.
+bool HasRivalSize(const std::vector<OutlineBeam>& beams,
+                  const OutlineModel& model,
+                  const OutlineFit& best,
+                  const std::array<bool, 4>& is_closed);
 
 }  // namespace voqcal

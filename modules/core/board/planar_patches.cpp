@@ -120,15 +120,33 @@ bool IsTooLarge(const PlanarPatch& patch, const PatchSearchOptions& options) {
          patch.plane.spread_m[2] > 2 * options.spread_m[1];
 }
 
-bool HasBoardSize(const PlanarPatch& patch,
-                  const std::vector<std::size_t>& members,
-                  const VoxelGrid& grid,
-                  const PatchSearchOptions& options) {
-  if (patch.num_points < options.min_points) return false;
-  if (Unlikeness(patch, options) > std::log(2.0)) return false;
-  return std::all_of(members.begin(), members.end(), [&](std::size_t i) {
-    return (grid.MeanM(i) - patch.middle_m).norm() <= options.max_radius_m;
-  });
+/// The members around their common middle: a pole, a leg or a shelf in the plane may hang on to a
+/// board. Empty if these are not most of it.
+std::vector<std::size_t> Compact(const std::vector<std::size_t>& members,
+                                 const VoxelGrid& grid,
+                                 const PatchSearchOptions& options) {
+  constexpr int kNumRounds = 4;  // what is left out no longer draws the middle away
+  constexpr double kMinShare = 0.7;
+  PointMoments all;
+  for (const std::size_t i : members) all.Add(grid.Moments(i));
+  PointMoments kept = all;
+  std::vector<std::size_t> compact;
+  for (int round = 0; round < kNumRounds; ++round) {
+    const Eigen::Vector3d middle_m = kept.MeanM();
+    compact.clear();
+    kept = PointMoments();
+    for (const std::size_t i : members) {
+      if ((grid.MeanM(i) - middle_m).norm() > options.max_radius_m) continue;
+      compact.push_back(i);
+      kept.Add(grid.Moments(i));
+    }
+    if (kept.num < kMinShare * all.num) return {};
+  }
+  return compact;
+}
+
+bool HasBoardSize(const PlanarPatch& patch, const PatchSearchOptions& options) {
+  return patch.num_points >= options.min_points && Unlikeness(patch, options) <= std::log(2.0);
 }
 
 }  // namespace
@@ -146,19 +164,18 @@ std::vector<PlanarPatch> FindPlanarPatches(const std::vector<Eigen::Vector3d>& p
     surfaces[seed].patch = grown;
     members.assign(1, seed);
     Grow(grown, 1, grid, options, &surfaces, &members);
-    const PlanarPatch near = Describe(members, grid);
-    if (IsTooLarge(near, options)) continue;
-    const std::size_t num_near = members.size();
-    const bool is_near_board = HasBoardSize(near, members, grid, options);
+    if (IsTooLarge(Describe(members, grid), options)) continue;
+    const std::vector<std::size_t> near = Compact(members, grid, options);
     // What a gap divides may be one board seen by few scan lines, or a board and what stands beside
     // it: the larger of the two that has the board's size.
     Grow(grown, 2, grid, options, &surfaces, &members);
-    const PlanarPatch far = Describe(members, grid);
-    if (HasBoardSize(far, members, grid, options)) {
-      patches.push_back(far);
-    } else if (is_near_board) {
-      patches.push_back(near);
-      for (std::size_t i = num_near; i < members.size(); ++i) surfaces[members[i]].patch = kNone;
+    for (const auto& piece : {Compact(members, grid, options), near}) {
+      const PlanarPatch patch = Describe(piece, grid);
+      if (!HasBoardSize(patch, options)) continue;
+      patches.push_back(patch);
+      for (const std::size_t i : members) surfaces[i].patch = kNone;
+      for (const std::size_t i : piece) surfaces[i].patch = grown;
+      break;
     }
   }
   std::stable_sort(patches.begin(), patches.end(), [&](const auto& a, const auto& b) {

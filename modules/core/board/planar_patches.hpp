@@ -15,7 +15,7 @@ struct PatchSearchOptions {
   /// Spread (1 sigma) that is looked for along the shorter and the longer axis; patches with less
   /// than half of it or more than twice as much are something else.
   Eigen::Vector2d spread_m = Eigen::Vector2d(0.18, 0.25);
-  double max_radius_m = 1.0;  ///< Patches that reach farther from their middle are walls or floor.
+  double max_radius_m = 0.7;  ///< What is farther from a patch's middle only hangs on to it.
   int min_points = 30;
 };
 

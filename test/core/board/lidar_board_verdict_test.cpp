@@ -85,6 +85,28 @@ TEST(LidarBoardVerdict, SurfaceThatIsScreenedToTheBoardsSizeIsNone) {
             VerdictOn(SynthesizeLidarBoard(scene)));
 }
 
+TEST(LidarBoardVerdict, EdgeOfWhichAPartIsShownIsProven) {
+  // Something stands before the surroundings on the right, but for the upper third of the edge.
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  scene.boxes.push_back(Pillar(-0.25, 0.08));
+  scene.boxes.back().half_m.z() = 0.2;
+  scene.boxes.back().T_lidar_box.translation().z() = -0.13;  // up to 0.14 m of 0.42 m on the board
+  EXPECT_EQ("found", VerdictOn(SynthesizeLidarBoard(scene)));
+}
+
+TEST(LidarBoardVerdict, BoardSeenFlatIsNamed) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 128;
+  scene.noise_m = 0.001;
+  for (const double tilt_deg : {60.0, 75.0}) {
+    scene.T_lidar_board = FacingBoard({2.3, 0.0, 0.0}, 0.0, tilt_deg);
+    EXPECT_EQ(tilt_deg < 70 ? "found" : "seen at too flat an angle",
+              VerdictOn(SynthesizeLidarBoard(scene)))
+        << tilt_deg;
+  }
+}
+
 TEST(LidarBoardVerdict, BoardThatAFewLinesLeaveTooMuchPlayIsTooLoose) {
   const PointCloud cloud = SynthesizeLidarBoard(UprightBoard());
   LidarBoardOptions strict;

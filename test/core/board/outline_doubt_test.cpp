@@ -1,5 +1,6 @@
 #include "core/board/outline_doubt.hpp"
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -18,8 +19,10 @@ OutlineModel Model() {
 
 /// Level lines of dense beams, `gap_m` apart, one of them at height `first_m`; the rectangle stands
 /// upright at `centre_m`.
-std::vector<OutlineBeam> Lines(const Eigen::Vector2d& centre_m, double gap_m, double first_m) {
-  const OutlineModel model = Model();
+std::vector<OutlineBeam> Lines(const Eigen::Vector2d& centre_m,
+                               double gap_m,
+                               double first_m,
+                               const OutlineModel& model = Model()) {
   std::vector<OutlineBeam> beams;
   const int num_lines = static_cast<int>(0.7 / gap_m);
   for (int line = -num_lines; line <= num_lines; ++line) {
@@ -101,6 +104,38 @@ TEST(HasTurnedRival, IsSoWhereOneLineIsAllThatHits) {
     }
   }
   EXPECT_TRUE(HasTurnedRival(single, model, RefineOutline(single, model, diamond)));
+}
+
+TEST(HasRivalSize, IsSoWhereTheBeamsShowAnotherSize) {
+  constexpr std::array<bool, 4> kAllClosed = {true, true, true, true};
+  const OutlineModel model = Model();
+  OutlineModel other = model;
+  other.height_m -= 0.1;
+  const auto right = Lines({0.0, 0.0}, 0.03, 0.0);
+  const auto wrong = Lines({0.0, 0.0}, 0.03, 0.0, other);
+  const OutlineFit right_fit = RefineOutline(right, model, {{0.0, 0.0}, 0.0});
+  const OutlineFit wrong_fit = RefineOutline(wrong, model, {{0.0, 0.0}, 0.0});
+  EXPECT_FALSE(HasRivalSize(right, model, right_fit, kAllClosed));
+  EXPECT_TRUE(HasRivalSize(wrong, model, wrong_fit, kAllClosed));
+}
+
+TEST(HasRivalSize, IsNotSoWhereTheLinesLeaveTheSizeOpen) {
+  // Lines at -0.5, -0.25, 0, 0.25, 0.5 of a thing 0.75 m high: it may as well be 0.8 m high.
+  OutlineModel other = Model();
+  other.height_m = 0.75;
+  const auto beams = Lines({0.0, 0.0}, 0.25, 0.0, other);
+  const OutlineFit fit = RefineOutline(beams, Model(), {{0.0, 0.03}, 0.0});
+  EXPECT_FALSE(HasRivalSize(beams, Model(), fit, {true, true, true, true}));
+}
+
+TEST(HasRivalSize, IsNoLargerOneWhereNothingShowsTheEnd) {
+  // Hits only, as of a cloud that was cropped to the board.
+  std::vector<OutlineBeam> hits;
+  for (const OutlineBeam& beam : Lines({0.0, 0.0}, 0.03, 0.0)) {
+    if (beam.is_hit) hits.push_back(beam);
+  }
+  const OutlineFit fit = RefineOutline(hits, Model(), {{0.0, 0.0}, 0.0});
+  EXPECT_FALSE(HasRivalSize(hits, Model(), fit, {false, false, false, false}));
 }
 
 }  // namespace

@@ -121,9 +121,15 @@ bool HasRightSize(const Measurement& m,
                   const std::array<double, 4>& measured_m,
                   const std::array<double, 4>& true_m) {
   if (AreLengthsRight(measured_m, true_m)) return true;
-  std::array<bool, 4> is_closed{};
-  std::transform(edges.begin(), edges.end(), is_closed.begin(), IsClosed);
-  return !HasRivalSize(m.view.Outline(), m.model, m.outline, is_closed);
+  // Edge i and the one opposite reach from the edge before to the edge after. Without beams past
+  // these the hits next to them would always favour a larger size.
+  Eigen::Vector2d grows;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double error_m = measured_m[i] + measured_m[i + 2] - true_m[i] - true_m[i + 2];
+    const bool may_grow = IsClosed(edges[(i + 3) % 4]) && IsClosed(edges[i + 1]);
+    grows[static_cast<Eigen::Index>(i)] = error_m < 0 ? -1.0 : (may_grow ? 1.0 : 0.0);
+  }
+  return !HasRivalSize(m.view.Outline(), m.model, m.outline, grows);
 }
 
 std::optional<NoLidarBoard> Bend(const Measurement& m,
@@ -142,10 +148,15 @@ std::optional<NoLidarBoard> Bend(const Measurement& m,
 }
 
 bool IsLoose(const Measurement& m, double max_sigma_m) {
-  constexpr double kMayTurn = 0.15;  // of it: with less, no board was ever found turned
+  // Shares of the largest sigma: with less, no board was ever found turned, with many hits and with
+  // few.
+  constexpr double kMayTurn = 0.25;
+  constexpr double kMayTurnIfFew = 0.15;
+  constexpr std::size_t kFewHits = 150;
   const double sigma_m = CornerSigmaM(m.outline, m.model);
   if (sigma_m > max_sigma_m) return true;
-  return sigma_m > kMayTurn * max_sigma_m && HasTurnedRival(m.view.Outline(), m.model, m.outline);
+  const double may_turn = m.board_hits.size() < kFewHits ? kMayTurnIfFew : kMayTurn;
+  return sigma_m > may_turn * max_sigma_m && HasTurnedRival(m.view.Outline(), m.model, m.outline);
 }
 
 }  // namespace voqcal

@@ -9,6 +9,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "core/board/lidar_beams.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -139,20 +141,24 @@ bool HasTurnedRival(const std::vector<OutlineBeam>& beams,
 bool HasRivalSize(const std::vector<OutlineBeam>& beams,
                   const OutlineModel& model,
                   const OutlineFit& best,
-                  const std::array<bool, 4>& is_closed) {
-  constexpr std::array<double, 5> kOffM = {0.0, -0.06, 0.06, -0.12, 0.12};
-  constexpr double kBetter = 4.0;  // ln 50
-  for (const double wider_m : kOffM) {
-    for (const double higher_m : kOffM) {
-      if (wider_m == 0.0 && higher_m == 0.0) continue;
-      if (wider_m > 0.0 && !(is_closed[1] && is_closed[3])) continue;
-      if (higher_m > 0.0 && !(is_closed[0] && is_closed[2])) continue;
+                  const Eigen::Vector2d& grows) {
+  constexpr std::array<double, 3> kOffM = {0.0, 0.06, 0.12};
+  constexpr double kBetter = 4.0;          // ln 50
+  constexpr std::size_t kNumBeams = 1000;  // tell another size as well as more do
+  std::vector<OutlineBeam> few;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (IsInShare(i, kNumBeams, beams.size())) few.push_back(beams[i]);
+  }
+  const double to_beat = EvaluateOutline(few, model, best).log_likelihood + kBetter;
+  for (const double off_x_m : kOffM) {
+    for (const double off_y_m : kOffM) {
+      if (off_x_m == 0.0 && off_y_m == 0.0) continue;
+      const Eigen::Vector2d off_m = grows.cwiseProduct(Eigen::Vector2d(off_x_m, off_y_m));
       OutlineModel other = model;
-      other.width_m += wider_m;
-      other.height_m += higher_m;
-      const OutlineFit rough = SharpenOutline(beams, other, best.pose, SearchBlurM(model) / 2);
-      const OutlineFit rival = RefineOutline(beams, other, rough.pose);
-      if (rival.log_likelihood > best.log_likelihood + kBetter) return true;
+      other.width_m += off_m.x();
+      other.height_m += off_m.y();
+      const OutlineFit rough = SharpenOutline(few, other, best.pose, SearchBlurM(model) / 2);
+      if (RefineOutline(few, other, rough.pose).log_likelihood > to_beat) return true;
     }
   }
   return false;

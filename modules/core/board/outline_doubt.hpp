@@ -1,7 +1,8 @@
 #pragma once
 
-#include <array>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/board/outline_fit.hpp"
 
@@ -25,15 +26,13 @@ bool HasTurnedRival(const std::vector<OutlineBeam>& beams,
                     const OutlineModel& model,
                     const OutlineFit& best);
 
-/// Whether a rectangle that is 60 or 120 mm wider or narrower, higher or lower, or both, explains
-/// the beams better than `best` does, by a likelihood ratio of 50: then it is a thing of another
-/// size.
+/// Whether a rectangle that is wider, higher or both by 60 or 120 mm explains the beams better than
+/// `best` does, by a likelihood ratio of 50: then it is a thing of another size.
 ///
-/// @param is_closed  Whether beams miss past each edge (BoardSpec's order). Without them the hits
-///     next to the edge alone would favour a larger rectangle.
+/// @param grows  For width and height, which way to try: 1 longer, -1 shorter, 0 not at all.
 bool HasRivalSize(const std::vector<OutlineBeam>& beams,
                   const OutlineModel& model,
                   const OutlineFit& best,
-                  const std::array<bool, 4>& is_closed);
+                  const Eigen::Vector2d& grows);
 
 }  // namespace voqcal

@@ -1,6 +1,5 @@
 #include "core/board/outline_doubt.hpp"
 
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -107,7 +106,7 @@ TEST(HasTurnedRival, IsSoWhereOneLineIsAllThatHits) {
 }
 
 TEST(HasRivalSize, IsSoWhereTheBeamsShowAnotherSize) {
-  constexpr std::array<bool, 4> kAllClosed = {true, true, true, true};
+  const Eigen::Vector2d lower(0.0, -1.0);
   const OutlineModel model = Model();
   OutlineModel other = model;
   other.height_m -= 0.1;
@@ -115,8 +114,8 @@ TEST(HasRivalSize, IsSoWhereTheBeamsShowAnotherSize) {
   const auto wrong = Lines({0.0, 0.0}, 0.03, 0.0, other);
   const OutlineFit right_fit = RefineOutline(right, model, {{0.0, 0.0}, 0.0});
   const OutlineFit wrong_fit = RefineOutline(wrong, model, {{0.0, 0.0}, 0.0});
-  EXPECT_FALSE(HasRivalSize(right, model, right_fit, kAllClosed));
-  EXPECT_TRUE(HasRivalSize(wrong, model, wrong_fit, kAllClosed));
+  EXPECT_FALSE(HasRivalSize(right, model, right_fit, lower));
+  EXPECT_TRUE(HasRivalSize(wrong, model, wrong_fit, lower));
 }
 
 TEST(HasRivalSize, IsNotSoWhereTheLinesLeaveTheSizeOpen) {
@@ -125,17 +124,9 @@ TEST(HasRivalSize, IsNotSoWhereTheLinesLeaveTheSizeOpen) {
   other.height_m = 0.75;
   const auto beams = Lines({0.0, 0.0}, 0.25, 0.0, other);
   const OutlineFit fit = RefineOutline(beams, Model(), {{0.0, 0.03}, 0.0});
-  EXPECT_FALSE(HasRivalSize(beams, Model(), fit, {true, true, true, true}));
-}
-
-TEST(HasRivalSize, IsNoLargerOneWhereNothingShowsTheEnd) {
-  // Hits only, as of a cloud that was cropped to the board.
-  std::vector<OutlineBeam> hits;
-  for (const OutlineBeam& beam : Lines({0.0, 0.0}, 0.03, 0.0)) {
-    if (beam.is_hit) hits.push_back(beam);
+  for (const double grows : {-1.0, 1.0}) {
+    EXPECT_FALSE(HasRivalSize(beams, Model(), fit, {0.0, grows})) << grows;
   }
-  const OutlineFit fit = RefineOutline(hits, Model(), {{0.0, 0.0}, 0.0});
-  EXPECT_FALSE(HasRivalSize(hits, Model(), fit, {false, false, false, false}));
 }
 
 }  // namespace

@@ -133,12 +133,16 @@ CalibrationResult AssessorNode::Result() {
                               result.T_camera_lidar,
                               rig_.diagnosis);
 
-  result.lens_correction = CorrectLens(samples,
-                                       rig_.board,
-                                       rig_.camera,
-                                       result.T_camera_lidar,
-                                       result.held_out,
-                                       rig_.extrinsic_refiner.likelihood);
+  // Lens against lens: another method's scores would be compared with the likelihood's.
+  for (const MethodTrial& trial : result.trials) {
+    if (trial.method != RefineMethod::kLikelihood || !trial.problem.empty()) continue;
+    result.lens_correction = CorrectLens(samples,
+                                         rig_.board,
+                                         rig_.camera,
+                                         result.T_camera_lidar,
+                                         trial.held_out,
+                                         rig_.extrinsic_refiner.likelihood);
+  }
   result.e_dim_mm = MedianBoardDimensionErrorMm(all, rig_.board);
 
   result.used_ids = IdsOf(samples);

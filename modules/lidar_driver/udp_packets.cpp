@@ -59,50 +59,31 @@ class UdpPackets : public PacketSource {
 
   std::optional<HostPacket> Next() override {
     constexpr int kMaxWaitMs = 50;
-    constexpr int kMaxOthers =
-        100;  // in a row: whoever floods the port must not stop the heartbeat
-    for (int i = 0; i < kMaxOthers; ++i) {
-      pollfd waiting{socket_.get(), POLLIN, 0};
-      if (poll(&waiting, 1, kMaxWaitMs) <= 0) return std::nullopt;
-      sockaddr_in sender{};
-      auto packet = Receive(&sender);
-      if (!packet || IsFromOurSensor(sender)) return packet;
-      ++counts_["packets of another sender"];
-    }
-    return std::nullopt;
+    pollfd waiting{socket_.get(), POLLIN, 0};
+    if (poll(&waiting, 1, kMaxWaitMs) <= 0) return std::nullopt;
+    return Receive();
   }
 
   bool HasEnded() const override { return false; }
   const std::map<std::string, std::int64_t>& Counts() const override { return counts_; }
 
   std::string State() const override {
-    return IsSilent() ? "waiting for packets on " + name_ : "running";
+    const bool is_silent = Clock::now() - last_arrival_ > std::chrono::seconds(1);
+    return is_silent ? "waiting for packets on " + name_ : "running";
   }
 
  private:
-  bool IsSilent() const { return Clock::now() - last_arrival_ > std::chrono::seconds(1); }
-
-  // Who is heard first is the sensor, until it is silent: two that send to one port would make one
-  // lidar with the points of both.
-  bool IsFromOurSensor(const sockaddr_in& sender) {
-    if (IsSilent()) sensor_ = sender.sin_addr.s_addr;
-    if (sender.sin_addr.s_addr != sensor_) return false;
-    last_arrival_ = Clock::now();
-    return true;
-  }
-
-  std::optional<HostPacket> Receive(sockaddr_in* sender) {
+  std::optional<HostPacket> Receive() {
     alignas(cmsghdr) std::array<char, 256> control{};
     iovec buffer{bytes_.data(), bytes_.size()};
     msghdr message{};
-    message.msg_name = sender;
-    message.msg_namelen = sizeof(*sender);
     message.msg_iov = &buffer;
     message.msg_iovlen = 1;
     message.msg_control = control.data();
     message.msg_controllen = control.size();
     const ssize_t num_bytes = recvmsg(socket_.get(), &message, MSG_DONTWAIT);
     if (num_bytes < 0) return std::nullopt;  // a signal, or a checksum that the kernel refused
+    last_arrival_ = Clock::now();
     HostPacket packet{0, {bytes_.begin(), bytes_.begin() + num_bytes}};
     for (cmsghdr* note = CMSG_FIRSTHDR(&message); note; note = CMSG_NXTHDR(&message, note)) {
       ReadNote(*note, &packet);
@@ -127,8 +108,7 @@ class UdpPackets : public PacketSource {
   std::string name_;
   Descriptor socket_;
   std::array<std::uint8_t, 65536> bytes_{};
-  Clock::time_point last_arrival_;  ///< Of the sensor's.
-  in_addr_t sensor_ = INADDR_ANY;
+  Clock::time_point last_arrival_;
   std::map<std::string, std::int64_t> counts_;
 };
 

@@ -182,6 +182,7 @@ LogWriter::LogWriter(const std::filesystem::path& path) : path_(path) {
   try {
     struct flock lock = WholeFile(F_WRLCK);
     if (fcntl(descriptor_, F_OFD_SETLK, &lock) != 0) {
+      if (errno != EAGAIN && errno != EACCES) Fail("lock");
       throw std::runtime_error(path.string() + ": is being written by another process");
     }
     CutHalfWrittenEvent();

@@ -143,6 +143,7 @@ void SampleCollectorNode::OnCommand(const command_t& message) {
     session_.Reset();
     log_sha256_ = session_.Sha256();
     picker_.SetKnown({});
+    is_finish_requested_ = false;
     is_finished_ = false;
     Announce(message.utime, "reset", 0, "");
     PublishSamples();

@@ -119,14 +119,17 @@ void PrintHeader() {
               "NEES");
 }
 
-void Print(const std::string& kind, const Tally& tally) {
-  std::printf("%-14s %6d %6d %6d %7d %12d %6d %10.2f %10.3f %6.2f\n",
+void Print(const std::string& kind, bool is_ours_alone, const Tally& tally) {
+  const auto theirs = [is_ours_alone](int num) {
+    return is_ours_alone ? std::string("-") : std::to_string(num);
+  };
+  std::printf("%-14s %6d %6d %6s %7s %12s %6d %10.2f %10.3f %6.2f\n",
               kind.c_str(),
               tally.num_images,
               tally.num_ours,
-              tally.num_sb,
-              tally.num_classic,
-              tally.num_only_theirs,
+              theirs(tally.num_sb).c_str(),
+              theirs(tally.num_classic).c_str(),
+              theirs(tally.num_only_theirs).c_str(),
               tally.num_wrong,
               1e3 * Mean(tally.errors_m),
               Mean(tally.errors_rad) * 180 / M_PI,
@@ -150,7 +153,7 @@ void Rendered(const Flags& flags) {
             flags.is_ours_alone,
             &tally);
     }
-    Print(kind, tally);
+    Print(kind, flags.is_ours_alone, tally);
   }
 }
 

@@ -169,9 +169,14 @@ void AddGuidanceBound(CLI::App* app) {
       "Poses that an accuracy takes at least, with the best guidance there can be");
   figure->add_option("--rig", args->rig, "A simulated rig (YAML)")->required();
   figure->add_option("--candidates", args->num_candidates, "Places that are looked at")
-      ->capture_default_str();
-  figure->add_option("--runs", args->num_draws, "Random sessions")->capture_default_str();
-  figure->add_option("--num-poses", args->num_poses, "Of a session")->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  figure->add_option("--runs", args->num_draws, "Random sessions")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  figure->add_option("--num-poses", args->num_poses, "Of a session")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
   figure->add_option("--seed", args->seed, "Of the places and sessions")->capture_default_str();
   figure->callback([args] {
     const Rig rig = LoadRig(args->rig);

@@ -1,6 +1,7 @@
 #include "core/assessment/lens_correction.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -50,7 +51,7 @@ LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
                            const BoardSpec& board,
                            const CameraModel& camera,
                            const Eigen::Isometry3d& T_camera_lidar,
-                           const SceneScore& held_out,
+                           const SceneScore& held_out_without,
                            const LikelihoodOptions& options) {
   LensCorrection correction;
   correction.camera = camera;
@@ -73,8 +74,13 @@ LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
   correction.T_camera_lidar = refined.T_camera_lidar;
   correction.covariance = refined.uncertainty.covariance;
   correction.held_out = HeldOut(samples, board, camera, refined, options);
-  const bool is_better = ErrorMm(correction.held_out) < (1.0 - kMinGain) * ErrorMm(held_out);
-  correction.problem = is_better ? "" : "poses held out fit hardly better with it";
+  const double with_mm = ErrorMm(correction.held_out);
+  const double without_mm = ErrorMm(held_out_without);
+  if (!std::isfinite(with_mm) || !std::isfinite(without_mm)) {
+    correction.problem = "not every pose could be held out";
+  } else if (with_mm >= (1.0 - kMinGain) * without_mm) {
+    correction.problem = "poses held out fit hardly better with it";
+  }
   return correction;
 }
 

@@ -36,14 +36,14 @@ struct LensCorrection {
 /// the lidar's points or the chessboards' pixels, or do not tell it, or where the error of poses
 /// held out (MethodTrial::ErrorMm) does not fall by a tenth against the intrinsics that were given.
 ///
-/// @param T_camera_lidar  refined with the intrinsics that were given: the start.
-/// @param held_out        its scores.
+/// @param T_camera_lidar    refined with the intrinsics that were given: the start.
+/// @param held_out_without  the likelihood's scores with the intrinsics that were given.
 /// @throws std::invalid_argument if `options` has Problems().
 LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
                            const BoardSpec& board,
                            const CameraModel& camera,
                            const Eigen::Isometry3d& T_camera_lidar,
-                           const SceneScore& held_out,
+                           const SceneScore& held_out_without,
                            const LikelihoodOptions& options);
 
 }  // namespace voqcal

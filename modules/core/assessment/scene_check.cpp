@@ -233,6 +233,7 @@ void Judge(const SceneCheckOptions& options, SceneCheck* check) {
                                    offset_deg.z(),
                                    sigma_deg.z());
   bool is_off = false;
+  bool may_be_off = false;
   std::string open;
   for (int axis = 0; axis < 3; ++axis) {
     const double sigma_rad = check->sigma_rad[axis];
@@ -241,6 +242,7 @@ void Judge(const SceneCheckOptions& options, SceneCheck* check) {
     const bool is_sure = check->gain_sigmas[axis] >= options.min_gain_sigmas;
     if (sigma_rad > options.max_sigma_rad || (seems_off && !is_sure)) {
       open += "xyz"[axis];
+      may_be_off = may_be_off || seems_off;
     } else {
       is_off = is_off || seems_off;
     }
@@ -249,7 +251,11 @@ void Judge(const SceneCheckOptions& options, SceneCheck* check) {
     check->reason = "the sensors share too few sharp edges (best turn: " + where + ")";
     return;
   }
-  check->verdict = is_off ? SceneVerdict::kDisagrees : SceneVerdict::kAgrees;
+  if (is_off) {
+    check->verdict = SceneVerdict::kDisagrees;
+  } else if (!may_be_off) {
+    check->verdict = SceneVerdict::kAgrees;
+  }
   check->reason = Format("its edges fit best when turned by %.2f deg (", offset_deg.norm()) +
                   where + Format("), %.0f mm at 10 m", 1e4 * check->offset_rad.head<2>().norm());
   if (!open.empty()) check->reason += "; too little shows a turn about " + open;

@@ -21,7 +21,7 @@ struct SceneCheckOptions {
   /// An offset about an axis disagrees beyond this (0.2 deg), half a pixel of a sweep...
   double tolerance_rad = 0.0034906585;
   double num_sigmas = 3.0;  ///< ...and beyond so many of its standard errors,
-  /// if turning back costs so many standard errors of the score; else the axis is left open.
+  /// if turning back costs so many standard errors of the score; else the scene does not say.
   double min_gain_sigmas = 2.0;
   SceneViewOptions view;
 

@@ -48,9 +48,11 @@ void GuidedBoard::DecideUntil(double time_s) {
   if (end_s_ || free_from_s >= time_s) return;
   const bool is_last = static_cast<int>(stops_.size()) >= options_.num_poses;
   const bool is_new = request_ && request_ != followed_;
-  if (is_dismissed_ || (is_last && is_new)) {
+  const bool is_patience_over =
+      request_ && free_from_s >= std::max(RestsSince(), set_out_s_) + kPatienceS;
+  if (is_dismissed_ || (is_last && (is_new || is_patience_over))) {
     end_s_ = time_s;
-  } else if (is_new || (request_ && free_from_s >= RestsSince() + kPatienceS)) {
+  } else if (is_new || is_patience_over) {
     SetOut(free_from_s);
   }
 }
@@ -60,14 +62,16 @@ double GuidedBoard::RestsSince() const {
 }
 
 void GuidedBoard::SetOut(double leave_s) {
+  set_out_s_ = leave_s;
   const auto T_lidar_board = Hold();
+  ++num_holds_;
   followed_ = request_;
   if (T_lidar_board) stops_.push_back({leave_s, *T_lidar_board});
 }
 
 // Off by ever more where the room leaves no place.
 std::optional<Eigen::Isometry3d> GuidedBoard::Hold() const {
-  const KeyedNoise noise(options_.seed, NoiseUse::kHolds, static_cast<std::int64_t>(stops_.size()));
+  const KeyedNoise noise(options_.seed, NoiseUse::kHolds, num_holds_);
   for (int trial = 0; trial < kNumTrials; ++trial) {
     const double scale = (1.0 + 4.0 * trial / kNumTrials) / std::sqrt(3.0);
     Vector6d error;

@@ -60,6 +60,8 @@ class GuidedBoard {
   std::optional<std::int64_t> request_;   // the newest...
   std::optional<std::int64_t> followed_;  // ...and the last that the board set out for
   Eigen::Isometry3d T_lidar_asked_ = Eigen::Isometry3d::Identity();
+  double set_out_s_ = 0.0;      // or tried to, last
+  std::int64_t num_holds_ = 1;  // each is off by something else
   bool is_dismissed_ = false;
   std::optional<double> end_s_;
 };

@@ -115,5 +115,16 @@ TEST_F(GuidedBoardTest, EndsAfterSoManyStops) {
   EXPECT_EQ(static_cast<int>(board_.stops().size()), rig_.options.num_poses);
 }
 
+// A detector that never finds the board: nothing new is ever asked.
+TEST_F(GuidedBoardTest, EndsAfterSoManyStopsThoughTheSameIsAsked) {
+  board_.Ask(1, AskedCamera(1));
+  const double longest_stop_s = 2 * rig_.options.hold_s + rig_.options.move_s + 10.0;
+  for (double time_s = 1.0; time_s < rig_.options.num_poses * longest_stop_s; time_s += 1.0) {
+    board_.DecideUntil(time_s);
+  }
+  EXPECT_TRUE(board_.end_s());
+  EXPECT_EQ(static_cast<int>(board_.stops().size()), rig_.options.num_poses);
+}
+
 }  // namespace
 }  // namespace voqcal

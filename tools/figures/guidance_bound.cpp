@@ -1,4 +1,5 @@
-// voqcal_figures guidance-bound: how few poses the best guidance that there could be would need.
+// voqcal_figures guidance-bound: how few poses the best choice among places drawn at random would
+// need.
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,7 @@ struct BoundArgs {
 
 // Of each number of poses.
 struct Curves {
-  std::vector<double> bound;          // no guidance is below
+  std::vector<double> bound;          // no choice among the places is below
   std::vector<double> one_at_a_time;  // each pose the best at its time
   std::vector<double> at_random;      // median
 };
@@ -69,7 +70,7 @@ class Bound {
     std::printf("worst error by information alone, %s; %zu places\n",
                 ToString(guidance_.tolerance.unit).c_str(),
                 asked.size());
-    std::puts("poses  no guidance is below  best design  one at a time  at random");
+    std::puts("poses   no choice is below   best design  one at a time  at random");
     Curves curves;
     Eigen::MatrixXd greedy = nothing_.information();
     for (int n = 1; n <= args_.num_poses; ++n) {
@@ -166,7 +167,7 @@ void AddGuidanceBound(CLI::App* app) {
   const auto args = std::make_shared<BoundArgs>();
   CLI::App* figure = app->add_subcommand(
       "guidance-bound",
-      "Poses that an accuracy takes at least, with the best guidance there can be");
+      "Poses that an accuracy takes at least, with the best choice among places drawn at random");
   figure->add_option("--rig", args->rig, "A simulated rig (YAML)")->required();
   figure->add_option("--candidates", args->num_candidates, "Places that are looked at")
       ->capture_default_str()

@@ -1,16 +1,59 @@
 #include "calibrate/collect.hpp"
 
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <spdlog/spdlog.h>
 
 #include "common/progress.hpp"
+#include "core/format.hpp"
 #include "messaging/log.hpp"
 #include "rig/poses_csv.hpp"
 #include "sample_collector/session_log.hpp"
 
 namespace voqcal {
 namespace {
+
+// Root of the mean squared distance of the corners that were seen from where the pose puts them;
+// NaN if none was.
+double ReprojectionRmsPx(const CameraBoard& seen,
+                         const BoardSpec& board,
+                         const CameraModel& camera) {
+  const std::vector<Eigen::Vector3d> corners_board_m = board.InnerCornersBoardM();
+  if (seen.corners_px.size() != corners_board_m.size()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const Eigen::Isometry3d T_camera_board = TransformFromPose(seen.pose);
+  double sum_px2 = 0.0;
+  int num_seen = 0;
+  for (std::size_t i = 0; i < corners_board_m.size(); ++i) {
+    if (!seen.corners_px[i].allFinite()) continue;
+    const Eigen::Vector3d corner_camera_m = T_camera_board * corners_board_m[i];
+    if (!camera.IsInFront(corner_camera_m)) return std::numeric_limits<double>::infinity();
+    sum_px2 += (camera.Project(corner_camera_m) - seen.corners_px[i]).squaredNorm();
+    ++num_seen;
+  }
+  return std::sqrt(sum_px2 / num_seen);
+}
+
+// A sample has the board's pose by the intrinsics that it was taken with: others would not change
+// it, only spoil what is made of it.
+void RequireThisCamera(const std::filesystem::path& log,
+                       const std::vector<BoardSample>& samples,
+                       const Rig& rig) {
+  for (const BoardSample& sample : samples) {
+    const double rms_px = ReprojectionRmsPx(sample.camera, rig.board, rig.camera);
+    if (!(rms_px > rig.camera_board_detector.max_reprojection_rms_px)) continue;
+    throw std::runtime_error(
+        log.string() +
+        Format(": sample %lld was taken with other intrinsics, or of another board, than %s says: "
+               "its corners are %.1f px off; calibrate the recording itself",
+               static_cast<long long>(sample.id),
+               rig.path.c_str(),
+               rms_px));
+  }
+}
 
 // A samples.lcm is the session itself: the run goes on from a copy of it.
 std::unique_ptr<OfflineRun> RunFromSamplesLog(const Rig& rig,
@@ -21,6 +64,7 @@ std::unique_ptr<OfflineRun> RunFromSamplesLog(const Rig& rig,
   while (reader.Next()) {
   }
   std::filesystem::copy_file(log, session_folder / kSamplesLogName);
+  RequireThisCamera(log, SessionLog(session_folder).samples(), rig);
   return std::make_unique<OfflineRun>(rig, session_folder);
 }
 

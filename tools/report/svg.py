@@ -228,7 +228,12 @@ def error_bars(title, x_label, y_label, bars):
 
 
 def curves(title, x_label, y_label, lines, x_log=False, y_log=False):
-    """lines: (style, [(x, y), ...])."""
+    """lines: (style, [(x, y), ...]). A logarithmic axis has no place for 0; None if nothing is left to show."""
+    lines = [
+        (style, [(x, y) for x, y in points if (x > 0 or not x_log) and (y > 0 or not y_log)]) for style, points in lines
+    ]
+    if not any(points for _, points in lines):
+        return None
     xs = [x for _, points in lines for x, _ in points]
     ys = [y for _, points in lines for _, y in points]
     low, high = min(ys), max(ys)

@@ -76,6 +76,7 @@ LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
   correction.held_out = HeldOut(samples, board, camera, refined, options);
   const double with_mm = ErrorMm(correction.held_out);
   const double without_mm = ErrorMm(held_out_without);
+  correction.problem.clear();
   if (!std::isfinite(with_mm) || !std::isfinite(without_mm)) {
     correction.problem = "not every pose could be held out";
   } else if (with_mm >= (1.0 - kMinGain) * without_mm) {

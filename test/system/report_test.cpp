@@ -14,6 +14,7 @@
 namespace voqcal {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -112,6 +113,22 @@ TEST_F(SimulatedReport, OfALiveSessionIsThatOfCalibrate) {
   Calibrate(rig_, Path("out/samples.lcm"), "from_samples");
   EXPECT_EQ(ReadWholeFile(Path("session/report.html")),
             ReadWholeFile(Path("from_samples/report.html")));
+}
+
+// They hold the board's pose by the camera that they were taken with: another would change nothing.
+TEST_F(SimulatedReport, SamplesOfAnotherCameraGiveNone) {
+  const std::string other =
+      folder_.Write("other.yaml", test::Replaced(ReadWholeFile(rig_), "fx_px: 750", "fx_px: 675"));
+  const test::Outcome outcome = test::Run({test::Program("calibrate"),
+                                           "--rig",
+                                           other,
+                                           "--log",
+                                           Path("out/samples.lcm"),
+                                           "--out",
+                                           Path("other")});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("samples.lcm"), HasSubstr("other intrinsics")));
+  EXPECT_FALSE(std::filesystem::exists(Path("other")));
 }
 
 TEST_F(Report, OfTheRealSessionIsGoodInABrowser) {

@@ -118,7 +118,7 @@ TEST_F(SimulatedReport, OfALiveSessionIsThatOfCalibrate) {
 // They hold the board's pose by the camera that they were taken with: another would change nothing.
 TEST_F(SimulatedReport, SamplesOfAnotherCameraGiveNone) {
   const std::string other =
-      folder_.Write("other.yaml", test::Replaced(ReadWholeFile(rig_), "fx_px: 750", "fx_px: 675"));
+      folder_.Write("other.yaml", test::Replaced(ReadWholeFile(rig_), "fx_px: 375", "fx_px: 340"));
   const test::Outcome outcome = test::Run({test::Program("calibrate"),
                                            "--rig",
                                            other,

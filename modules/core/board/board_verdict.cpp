@@ -120,7 +120,16 @@ bool HasRightSize(const Measurement& m,
                   const std::array<OutlineEdge, 4>& edges,
                   const std::array<double, 4>& measured_m,
                   const std::array<double, 4>& true_m) {
-  if (AreLengthsRight(measured_m, true_m)) return true;
+  // In halls full of crates and doors, of a thousand boards each way of scanning, looser limits
+  // take more of these for the board, and tighter ones lose more boards (voqcal_figures
+  // lidar-detection).
+  constexpr LengthTolerance kOfOne{0.03, 4.0, 0.15};
+  constexpr LengthTolerance kOfMean{0.03, 1.5, 0.08};
+  if (!AreLengthsRight(measured_m, edges, true_m, kOfOne, kOfMean)) return false;
+  // So sharp that no other size need be tried.
+  constexpr LengthTolerance kSharpOfOne{0.03, 0.0, 0.03};
+  constexpr LengthTolerance kSharpOfMean{0.02, 0.0, 0.02};
+  if (AreLengthsRight(measured_m, edges, true_m, kSharpOfOne, kSharpOfMean)) return true;
   // Edge i and the one opposite reach from the edge before to the edge after. Without beams past
   // these the hits next to them would always favour a larger size.
   Eigen::Vector2d grows;

@@ -125,14 +125,23 @@ std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
   return static_cast<std::size_t>(std::min_element(half.begin(), half.end()) - half.begin());
 }
 
-bool AreLengthsRight(const std::array<double, 4>& measured_m, const std::array<double, 4>& true_m) {
-  constexpr double kMaxOfOneM = 0.03;
-  constexpr double kMaxOfMeanM = 0.02;
+bool AreLengthsRight(const std::array<double, 4>& measured_m,
+                     const std::array<OutlineEdge, 4>& edges,
+                     const std::array<double, 4>& true_m,
+                     const LengthTolerance& of_one,
+                     const LengthTolerance& of_mean) {
+  const auto holds = [](const LengthTolerance& tolerance, double error_m, double sigma_m) {
+    return std::abs(error_m) <=
+           std::min(tolerance.open_m + tolerance.num_sigmas * sigma_m, tolerance.largest_m);
+  };
   for (std::size_t i = 0; i < 2; ++i) {
+    // Edge i and the one opposite reach from the edge before to the edge after.
+    const double sigma_m =
+        std::hypot(edges[(i + 3) % 4].offset_sigma_m, edges[i + 1].offset_sigma_m);
     const double error_m = measured_m[i] - true_m[i];
     const double opposite_error_m = measured_m[i + 2] - true_m[i + 2];
-    if (std::abs(error_m) > kMaxOfOneM || std::abs(opposite_error_m) > kMaxOfOneM ||
-        std::abs(error_m + opposite_error_m) > 2 * kMaxOfMeanM) {
+    if (!holds(of_one, error_m, sigma_m) || !holds(of_one, opposite_error_m, sigma_m) ||
+        !holds(of_mean, (error_m + opposite_error_m) / 2, sigma_m)) {
       return false;
     }
   }

@@ -48,11 +48,21 @@ std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
                                     double max_short_m,
                                     double slack = 1.0);
 
-/// Whether the edges, measured freely, are as long as they should be: each to within 30 mm and two
-/// opposite ones, which tilted lines lengthen and shorten, in the mean to within 20 mm. That is
-/// what spill, thickness and single scan lines leave open; where few beams tell the edges they may
-/// be farther off on a board too (HasRivalSize).
-bool AreLengthsRight(const std::array<double, 4>& measured_m, const std::array<double, 4>& true_m);
+/// How far a length may be off: `open_m`, which spill, thickness and single scan lines leave open,
+/// and a number of standard errors, but never more than `largest_m`.
+struct LengthTolerance {
+  double open_m;
+  double num_sigmas;
+  double largest_m;
+};
+
+/// Whether the edges, measured freely, are as long as they should be: each, and two opposite ones,
+/// which tilted lines lengthen and shorten, in the mean.
+bool AreLengthsRight(const std::array<double, 4>& measured_m,
+                     const std::array<OutlineEdge, 4>& edges,
+                     const std::array<double, 4>& true_m,
+                     const LengthTolerance& of_one,
+                     const LengthTolerance& of_mean);
 
 /// What the beams say that meet the plane just past an edge.
 struct PastEdge {

@@ -6,6 +6,8 @@
 #include <set>
 #include <stdexcept>
 
+#include <spdlog/spdlog.h>
+
 #include "messaging/convert_result.hpp"
 #include "messaging/log.hpp"
 #include "sample_collector/session_log.hpp"
@@ -35,7 +37,7 @@ void OfflineRun::FeedLog(const std::filesystem::path& log, const OnProgress& on_
       channels_.lidar_points, channels_.camera_image, channels_.calib_command};
   std::set<std::string> seen;
   LogReader reader(log);
-  while (const std::optional<LogEvent> event = reader.Next()) {
+  while (const std::optional<LogEvent> event = NextBeforeCut(&reader)) {
     seen.insert(event->channel);
     if (inputs.count(event->channel) == 0) continue;
     try {
@@ -55,6 +57,18 @@ void OfflineRun::FeedLog(const std::filesystem::path& log, const OnProgress& on_
     for (const std::string& channel : seen) there += (there.empty() ? "" : ", ") + channel;
     throw std::runtime_error(log.string() + ": has no channel " + needed + "; it has " +
                              (there.empty() ? "no events" : there));
+  }
+}
+
+// A power failure or a full disk ends a recording within an event: what came before it is good.
+std::optional<LogEvent> OfflineRun::NextBeforeCut(LogReader* reader) {
+  try {
+    return reader->Next();
+  } catch (const TruncatedLogError& error) {
+    num_cut_bytes_ = reader->num_bytes() - error.offset();
+    spdlog::warn(
+        "{}: its {} bytes are left out, all before it is used", error.what(), num_cut_bytes_);
+    return std::nullopt;
   }
 }
 
@@ -90,6 +104,10 @@ std::string OfflineRun::Losses() const {
   if (num_damaged_ > 0) {
     text += (text.empty() ? "" : "; ") + std::to_string(num_damaged_) + " damaged places";
   }
+  if (num_cut_bytes_ > 0) {
+    text += (text.empty() ? "" : "; ") + std::string("cut off within an event, ") +
+            std::to_string(num_cut_bytes_) + " bytes left out";
+  }
   return text;
 }
 
@@ -111,13 +129,16 @@ void OfflineRun::HandleAll() {
 bool IsSamplesLog(const Rig& rig, const std::filesystem::path& log) {
   LogReader reader(log);
   bool has_events = false;
-  while (const std::optional<LogEvent> event = reader.Next()) {
-    if (event->channel == kSampleChannel) return true;
-    if (event->channel == rig.channels.lidar_points ||
-        event->channel == rig.channels.camera_image) {
-      return false;
+  try {
+    while (const std::optional<LogEvent> event = reader.Next()) {
+      if (event->channel == kSampleChannel) return true;
+      if (event->channel == rig.channels.lidar_points ||
+          event->channel == rig.channels.camera_image) {
+        return false;
+      }
+      has_events = has_events || event->channel == kEventChannel;
     }
-    has_events = has_events || event->channel == kEventChannel;
+  } catch (const TruncatedLogError&) {  // told by whoever reads the log
   }
   return has_events;  // a session whose samples were all taken away
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "extrinsic_refiner/extrinsic_refiner_node.hpp"
 #include "lidar_board_detector/lidar_board_detector_node.hpp"
 #include "messaging/bus.hpp"
+#include "messaging/log.hpp"
 #include "rig/rig.hpp"
 #include "sample_collector/sample_collector_node.hpp"
 #include "voq_selector/voq_selector_node.hpp"
@@ -32,6 +34,7 @@ class OfflineRun {
   OfflineRun(const Rig& rig, const std::filesystem::path& session_folder);
 
   /// Feeds the sensor messages of a recording (sweeps, images, commands), event by event.
+  /// An event that is cut off by the file's end is left out, with a warning.
   /// @throws std::runtime_error naming the log, byte or event, and the cause.
   void FeedLog(const std::filesystem::path& log, const OnProgress& on_progress);
 
@@ -50,14 +53,15 @@ class OfflineRun {
   /// Every CALIB_EVENT.
   const std::vector<event_t>& events() const { return events_; }
 
-  /// "LIDAR_POINTS: 3 lost, 0 unreadable; 1 damaged places": what the recording lacks, by its
-  /// sequence numbers and as it was read; empty if nothing.
+  /// "LIDAR_POINTS: 3 lost, 0 unreadable; 1 damaged places; cut off ...": what the recording lacks,
+  /// by its sequence numbers and as it was read; empty if nothing.
   std::string Losses() const;
 
   /// What each module counted, by module: boards, misses by reason, samples, rejections by reason.
   std::vector<const Module*> modules() const;
 
  private:
+  std::optional<LogEvent> NextBeforeCut(LogReader* reader);
   void HandleAll();
 
   Channels channels_;
@@ -71,7 +75,8 @@ class OfflineRun {
   AssessorNode assessor_;
   extrinsic_averaged_t averaged_;
   std::vector<event_t> events_;
-  std::int64_t num_damaged_ = 0;  // places of the recording
+  std::int64_t num_damaged_ = 0;    // places of the recording
+  std::int64_t num_cut_bytes_ = 0;  // of the event that its end cut off
 };
 
 /// True if the log is a session's samples.lcm rather than a recording of sensors.

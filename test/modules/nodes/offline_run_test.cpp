@@ -87,6 +87,24 @@ TEST_F(OfflineRunTest, GoesOnAfterADamagedEventAndSaysSo) {
   EXPECT_THAT(run.samples(), SizeIs(rig.simulation.num_poses - 1));
 }
 
+// In the sync word, the header, the channel and the message: the same as if it had not begun.
+TEST_F(OfflineRunTest, LeavesOutAnEventThatTheEndCutsOffAndSaysSo) {
+  const Rig rig = test::TinySimulatedRig();
+  test::WriteStopsLog(rig, log_);
+  const std::string whole = ReadWholeFile(log_);
+  const std::size_t last = whole.rfind("\xED\xA1\xDA\x01");
+  for (const std::size_t num_bytes :
+       {std::size_t{2}, std::size_t{20}, std::size_t{35}, whole.size() - last - 1}) {
+    folder_.Write("raw.lcm", whole.substr(0, last + num_bytes));
+    OfflineRun run(rig, session(std::to_string(num_bytes)));
+    run.FeedLog(log_, NoProgress);
+    run.Finish(/*is_collecting_only=*/true);
+    EXPECT_EQ(run.Losses(),
+              "cut off within an event, " + std::to_string(num_bytes) + " bytes left out");
+    EXPECT_THAT(run.samples(), SizeIs(rig.simulation.num_poses - 1));
+  }
+}
+
 TEST_F(OfflineRunTest, CollectsOnlyIfAsked) {
   OfflineRun run(test::TinySimulatedRig(), session("s"));
   run.FeedSamples(test::SynthesizeSamples({}));
@@ -138,6 +156,8 @@ TEST_F(OfflineRunTest, TellsASessionsLogFromARecording) {
   }
   LogWriter(log_).Write({0, 0, "LIDAR_POINTS", {1, 2, 3}});
   EXPECT_TRUE(IsSamplesLog(test::TinySimulatedRig(), session("s") / kSamplesLogName));
+  EXPECT_FALSE(IsSamplesLog(test::TinySimulatedRig(), log_));
+  std::filesystem::resize_file(log_, 20);  // within its first event
   EXPECT_FALSE(IsSamplesLog(test::TinySimulatedRig(), log_));
 }
 

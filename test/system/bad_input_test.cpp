@@ -242,5 +242,14 @@ TEST_F(BadInput, RunRigStartsNothingWithARigThatCannotBeRead) {
   EXPECT_EQ(test::NamesIn(folder_.path()), std::vector<std::string>{"rig.yaml"});
 }
 
+TEST_F(BadInput, ScriptsBeforeTheBuildSayHowToBuild) {
+  const std::string bin = std::getenv("VOQCAL_BIN");
+  setenv("VOQCAL_BIN", folder_.path().c_str(), 1);  // a folder without programs
+  for (const char* script : {"up", "down", "run_rig", "status", "spy"}) {
+    ExpectRefused({test::Tool(script), rig_}, HasSubstr("not built yet: run tools/build"));
+  }
+  setenv("VOQCAL_BIN", bin.c_str(), 1);
+}
+
 }  // namespace
 }  // namespace voqcal

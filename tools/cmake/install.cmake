@@ -4,6 +4,8 @@ if(CMAKE_INSTALL_PREFIX_INITIALIZED_TO_DEFAULT)
   set(CMAKE_INSTALL_PREFIX /opt/voqcal CACHE PATH "Where cmake --install puts voqcal" FORCE)
 endif()
 
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # the target programs is enough
+
 file(GLOB launch_scripts RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS modules/*/launch)
 foreach(script modules/launch_module ${launch_scripts})
   get_filename_component(folder ${script} DIRECTORY)

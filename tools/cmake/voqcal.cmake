@@ -16,6 +16,9 @@ endif()
 # The same bytes on every x86-64 machine: no -march=native, no fused multiply-add, no -ffast-math.
 add_compile_options(-ffp-contract=off)
 
+# Everything that is installed, which is what tools/build makes; `all` has tests and benchmarks too.
+add_custom_target(programs)
+
 # Warnings and include root ("core/...", "messaging/...") of one target of ours.
 function(voqcal_target_defaults target)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/modules)
@@ -41,6 +44,7 @@ function(voqcal_program name)
   target_link_libraries(${name} PRIVATE ${arg_LIBS})
   if(NOT arg_NOT_INSTALLED)
     install(TARGETS ${name} RUNTIME DESTINATION bin)
+    add_dependencies(programs ${name})
   endif()
 endfunction()
 

@@ -15,6 +15,10 @@ fail() {  # MESSAGE [STATUS]
   exit "${2:-1}"
 }
 
+require_programs() {
+  [ -x "$bin/check_rig" ] || fail "voqcal is not built yet: run tools/build"
+}
+
 # The session's folder, absolute: DIR, or logs/NAME-OF-THE-RIG below the working directory, or, without
 # either, the one session that runs below logs/.
 session_folder() {  # DIR RIG

@@ -4,6 +4,7 @@
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -40,7 +41,7 @@ int RunProcess(int argc,
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
-    std::cerr << info.name << ": " << OneLine(error.what()) << " (see --help)\n";
+    PrintError(info.name, error.what() + std::string(" (see --help)"));
     return kExitUsage;
   }
   try {
@@ -48,7 +49,7 @@ int RunProcess(int argc,
     body(args);
     return EXIT_SUCCESS;
   } catch (const std::exception& error) {
-    std::cerr << info.name << ": " << OneLine(error.what()) << '\n';
+    PrintError(info.name, error.what());
     return EXIT_FAILURE;
   }
 }
@@ -61,18 +62,12 @@ void LogToStderr(const std::string& program, bool is_verbose) {
   spdlog::set_default_logger(std::move(logger));
 }
 
-std::string OneLine(const std::string& text) {
-  std::string line;
-  for (const char c : text) {
-    const bool is_break = c == '\n' || c == '\r';
-    if (!is_break) {
-      line += c;
-    } else if (!line.empty() && line.back() != ' ') {
-      line += ' ';
-    }
+void PrintError(const std::string& program, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    if (!line.empty()) std::cerr << program << ": " << line << '\n';
   }
-  while (!line.empty() && line.back() == ' ') line.pop_back();
-  return line;
 }
 
 }  // namespace voqcal

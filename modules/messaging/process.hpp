@@ -23,7 +23,7 @@ struct ProcessArgs {
 };
 
 /// The frame of every main(): reads the flags, sends spdlog to stderr under the module's name, runs
-/// `body`, and turns its exception into one line on stderr.
+/// `body`, and prints its exception (PrintError).
 ///
 /// @return the exit status: 0 when `body` returns (also after --help and --version), 1 when it
 /// throws,
@@ -36,7 +36,7 @@ int RunProcess(int argc,
 /// Sends spdlog to stderr, level info (debug if `is_verbose`), each line naming `program`.
 void LogToStderr(const std::string& program, bool is_verbose);
 
-/// `text` on one line: line breaks become spaces. OpenCV's exceptions have several lines.
-std::string OneLine(const std::string& text);
+/// Writes an error to stderr, each of its lines behind the program's name.
+void PrintError(const std::string& program, const std::string& text);
 
 }  // namespace voqcal

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "rig/driver_sections.hpp"
+#include "rig/lcm_url.hpp"
 #include "rig/pose_guide_section.hpp"
 #include "rig/transform_yaml.hpp"
 
@@ -20,6 +21,8 @@ void Finish(const Options& options, YamlSection* section) {
 void ReadLcm(YamlSection* top, Rig* rig, std::string* channel_prefix) {
   YamlSection section = top->Section("lcm");
   section.Read("url", &rig->lcm_url);
+  const std::string problem = LcmUrlProblem(rig->lcm_url);
+  if (!problem.empty()) section.AddError("url", problem);
   section.Read("channel_prefix", channel_prefix);
   section.RefuseUnknownKeys();
 }

@@ -8,6 +8,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "rig/nearest_word.hpp"
 #include "rig/number_text.hpp"
 
 namespace voqcal {
@@ -115,6 +116,7 @@ YamlSection::YamlSection(YamlDocument* document, YAML::Node node, std::string pa
 }
 
 YamlSection YamlSection::Section(const std::string& key) {
+  known_.insert(key);
   const auto entry = entries_.find(key);
   if (entry == entries_.end()) return {document_, YAML::Node(), PathOf(key), line_};
   entry->second.is_read = true;
@@ -133,6 +135,7 @@ YamlSection YamlSection::RequiredSection(const std::string& key) {
 }
 
 const YAML::Node* YamlSection::Find(const std::string& key) {
+  known_.insert(key);
   const auto entry = entries_.find(key);
   const bool is_given = entry != entries_.end();
   document_->known_keys_.push_back({PathOf(key), is_given ? entry->second.line : 0, false, ""});
@@ -242,7 +245,11 @@ void YamlSection::AddProblems(const std::vector<std::string>& problems) {
 
 void YamlSection::RefuseUnknownKeys() {
   for (const auto& [key, entry] : entries_) {
-    if (!entry.is_read) document_->AddError(entry.line, PathOf(key) + " is not a known key");
+    if (entry.is_read) continue;
+    const std::string meant = NearestWord(key, known_);
+    document_->AddError(entry.line,
+                        PathOf(key) + " is not a known key" +
+                            (meant.empty() ? "" : ": did you mean " + meant + "?"));
   }
 }
 

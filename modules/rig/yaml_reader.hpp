@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -84,7 +85,8 @@ class YamlSection {
   /// Errors of this section as a whole, at the line of the key that they begin with, if it is here.
   void AddProblems(const std::vector<std::string>& problems);
 
-  /// The keys that nobody has read become errors. The last thing to do with a section.
+  /// The keys that nobody has read become errors, with the known one that they resemble. The last
+  /// thing to do with a section.
   void RefuseUnknownKeys();
 
  private:
@@ -108,6 +110,7 @@ class YamlSection {
   std::string path_;  ///< "camera"; empty at the top level.
   int line_;
   std::map<std::string, Entry> entries_;
+  std::set<std::string> known_;  ///< Keys that were asked for.
   bool is_required_ = false;
   bool is_complete_ = true;
 };

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 #include <exception>
-#include <iostream>
+#include <string>
 
 #include "messaging/process.hpp"
 
@@ -16,14 +16,14 @@ int RunTool(CLI::App* app, int argc, const char* const* argv, const std::functio
   } catch (const CLI::Success& help_or_version) {
     return app->exit(help_or_version);
   } catch (const CLI::ParseError& error) {
-    std::cerr << app->get_name() << ": " << OneLine(error.what()) << " (--help lists the flags)\n";
+    PrintError(app->get_name(), error.what() + std::string(" (--help lists the flags)"));
     return kUsageError;
   }
   LogToStderr(app->get_name(), false);
   try {
     body();
   } catch (const std::exception& error) {
-    std::cerr << app->get_name() << ": " << OneLine(error.what()) << '\n';
+    PrintError(app->get_name(), error.what());
     return EXIT_FAILURE;
   }
   return EXIT_SUCCESS;

@@ -7,7 +7,7 @@
 namespace voqcal {
 
 /// The frame of every tool's main(): reads the flags that `app` has (and --version), runs `body`,
-/// and turns its exception into one line on stderr.
+/// and prints its exception (PrintError).
 ///
 /// @return the exit status: 0; 1 when `body` throws; 2 for flags that cannot be understood.
 int RunTool(CLI::App* app, int argc, const char* const* argv, const std::function<void()>& body);

@@ -55,10 +55,10 @@ TEST(RunProcess, LeavesOptionalFlagsOut) {
   EXPECT_TRUE(run.args.is_verbose);
 }
 
-TEST(RunProcess, AnswersAnExceptionInOneLineWithStatus1) {
-  const Outcome run = RunWith({"--rig", "a.yaml"}, "a.yaml:3: board:\n  width is missing\n");
+TEST(RunProcess, AnswersAnExceptionWithStatus1AndItsNameOnEachLine) {
+  const Outcome run = RunWith({"--rig", "a.yaml"}, "a.yaml:3: board\r\n\na.yaml:5: camera\n");
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.err, "detector: a.yaml:3: board:   width is missing\n");
+  EXPECT_EQ(run.err, "detector: a.yaml:3: board\ndetector: a.yaml:5: camera\n");
 }
 
 TEST(RunProcess, AnswersWrongFlagsWithStatus2) {
@@ -80,11 +80,6 @@ TEST(RunProcess, ExplainsItself) {
   const Outcome version = RunWith({"--version"});
   EXPECT_EQ(version.status, 0);
   EXPECT_THAT(version.out, testing::StartsWith("0."));
-}
-
-TEST(OneLine, JoinsLines) {
-  EXPECT_EQ(OneLine("a\n\nb\r\nc\n"), "a b c");
-  EXPECT_EQ(OneLine(""), "");
 }
 
 }  // namespace

@@ -169,7 +169,10 @@ TEST(LoadRig, RefusesWhatIsNotFinite) {
 
 TEST(LoadRig, RefusesUnknownAndRepeatedKeys) {
   EXPECT_EQ(LoadError(Minimal() + "lidar_board_detector:\n  min_rnage_m: 1\n"),
-            "rig.yaml:6: lidar_board_detector.min_rnage_m is not a known key");
+            "rig.yaml:6: lidar_board_detector.min_rnage_m is not a known key: did you mean "
+            "min_range_m?");
+  EXPECT_EQ(LoadError(Minimal() + "chanels: {}\n"),
+            "rig.yaml:5: chanels is not a known key: did you mean channels?");
   EXPECT_EQ(LoadError(Minimal() + "lidar: {}\n"), "rig.yaml:5: lidar is not a known key");
   EXPECT_EQ(LoadError(Minimal() + "lidar_driver: {jpeg_quality: 9}\n"),
             "rig.yaml:5: lidar_driver.jpeg_quality is not a known key");
@@ -226,6 +229,12 @@ TEST(LoadRig, RefusesChannelsThatLcmOrTheFlowCannotTellApart) {
             "rig.yaml:5: channels.voq_sets must not be empty, is \"\"");
   EXPECT_THAT(LoadError(Minimal() + "lcm: {channel_prefix: " + std::string(60, 'P') + "}\n"),
               HasSubstr("must have at most 63 letters"));
+}
+
+TEST(LoadRig, RefusesAnLcmUrlThatLcmWouldNotTake) {
+  EXPECT_EQ(LoadError(Minimal() + "lcm: {url: \"http://x\"}\n"),
+            "rig.yaml:5: lcm.url must begin with udpm://, tcpq://, memq:// or file://, is "
+            "\"http://x\"");
 }
 
 TEST(LoadRig, RefusesWhatIsNoRigFile) {

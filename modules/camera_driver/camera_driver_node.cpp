@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "images/encoded_image.hpp"
 #include "messaging/convert_image.hpp"
-#include "messaging/encoded_image.hpp"
 
 namespace voqcal {
 

@@ -5,12 +5,11 @@
 #include <string>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "camera_driver/guided_camera_source.hpp"
 #include "camera_driver/video_source.hpp"
 #include "core/simulation/simulation.hpp"
-#include "messaging/encoded_image.hpp"
+#include "images/encoded_image.hpp"
+#include "images/jpeg.hpp"
 #include "rig/atomic_file.hpp"
 #include "rig/frame_folder.hpp"
 
@@ -55,10 +54,7 @@ class SimulatedCameraSource : public CameraSource {
     if (has_ended_) return {};
     ++num_images_;
     const std::int64_t utime = kSyntheticEpochUtime + std::llround(time_s * 1e6);
-    std::vector<std::uint8_t> jpeg;
-    cv::imencode(
-        ".jpg", simulation_.Image(time_s), jpeg, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality_});
-    return TimedImage{utime, std::move(jpeg)};
+    return TimedImage{utime, EncodeJpeg(simulation_.Image(time_s), jpeg_quality_)};
   }
 
   bool HasEnded() const override { return has_ended_; }

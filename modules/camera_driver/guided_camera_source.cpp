@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include <opencv2/imgcodecs.hpp>
-
+#include "images/jpeg.hpp"
 #include "messaging/convert_simulation.hpp"
 
 namespace voqcal {
@@ -27,10 +26,7 @@ std::optional<TimedImage> GuidedCameraSource::Next() {
   const double time_s = 1e-6 * static_cast<double>(image.utime - kSyntheticEpochUtime);
   const Eigen::Isometry3d T_lidar_board =
       PoseAt(time_s, StopsFromMessage(*board_, kSyntheticEpochUtime), options_);
-  cv::imencode(".jpg",
-               simulation_.Image(time_s, T_lidar_board),
-               image.bytes,
-               {cv::IMWRITE_JPEG_QUALITY, jpeg_quality_});
+  image.bytes = EncodeJpeg(simulation_.Image(time_s, T_lidar_board), jpeg_quality_);
   ++num_images_;
   return image;
 }

@@ -5,11 +5,11 @@
 #include <string>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "camera_driver/capture_clock.hpp"
-#include "messaging/encoded_image.hpp"
+#include "images/encoded_image.hpp"
+#include "images/jpeg.hpp"
 
 namespace voqcal {
 namespace {
@@ -56,9 +56,7 @@ bool IsJpeg(const cv::Mat& frame) {
 
 std::vector<std::uint8_t> Encoded(const cv::Mat& frame, int jpeg_quality) {
   if (IsJpeg(frame)) return {frame.data, frame.data + frame.cols};
-  std::vector<std::uint8_t> jpeg;
-  cv::imencode(".jpg", frame, jpeg, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality});
-  return jpeg;
+  return EncodeJpeg(frame, jpeg_quality);
 }
 
 class VideoSource : public CameraSource {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "images/jpeg.hpp"
 #include "messaging/convert_image.hpp"
 
 namespace voqcal {
@@ -30,35 +30,15 @@ int Reduction(int width_px, int max_width_px) {
   return factor;
 }
 
-/// Decoded at the smaller size at once, which costs a fraction of decoding it whole.
-cv::Mat DecodedSmall(const image_t& image, int factor) {
-  const int flags = factor == 2   ? cv::IMREAD_REDUCED_COLOR_2
-                    : factor == 4 ? cv::IMREAD_REDUCED_COLOR_4
-                                  : cv::IMREAD_REDUCED_COLOR_8;
-  cv::Mat small = cv::imdecode(image.data, flags | cv::IMREAD_IGNORE_ORIENTATION);
-  if (small.empty()) throw std::runtime_error("an image that cannot be decoded");
-  return small;
-}
-
 /// At least a pixel high, however flat the image is.
 cv::Mat Small(const image_t& image, int factor) {
-  if (image.pixelformat == kPixelMjpeg && factor > 1) return DecodedSmall(image, factor);
+  if (image.pixelformat == kPixelMjpeg && factor > 1) return DecodeJpeg(image.data, factor);
   const cv::Mat whole = FromMessage(image);
   if (factor == 1) return whole;
   const cv::Size size(std::max(whole.cols / factor, 1), std::max(whole.rows / factor, 1));
   cv::Mat small;
   cv::resize(whole, small, size, 0, 0, cv::INTER_AREA);
   return small;
-}
-
-std::vector<std::uint8_t> SmallJpeg(const image_t& image, int factor) try {
-  std::vector<std::uint8_t> jpeg;
-  if (!cv::imencode(".jpg", Small(image, factor), jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality})) {
-    throw std::runtime_error("an image that no JPEG can hold");
-  }
-  return jpeg;
-} catch (const cv::Exception& error) {
-  throw std::runtime_error("an image that cannot be made small: " + error.err);
 }
 
 std::string Header(const image_t& image, const char* type) {
@@ -126,7 +106,7 @@ FramePtr ImageFrame(const image_t& image, const DashboardOptions& options) {
     return BinaryFrame(Header(image, is_jpeg ? "image/jpeg" : "image/png"),
                        {image.data.begin(), image.data.end()});
   }
-  const std::vector<std::uint8_t> jpeg = SmallJpeg(image, factor);
+  const std::vector<std::uint8_t> jpeg = EncodeJpeg(Small(image, factor), kJpegQuality);
   return BinaryFrame(Header(image, "image/jpeg"), {jpeg.begin(), jpeg.end()});
 }
 

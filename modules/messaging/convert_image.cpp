@@ -6,10 +6,11 @@
 #include <string>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "messaging/encoded_image.hpp"
+#include "images/encoded_image.hpp"
+#include "images/jpeg.hpp"
+#include "images/png.hpp"
 #include "messaging/sequence.hpp"
 
 namespace voqcal {
@@ -82,23 +83,17 @@ void RequireHeader(const image_t& message) {
     Fail("the " + format + " has " + Size(info->width_px, info->height_px) +
          " px, the message says " + Size(message.width, message.height));
   }
-  constexpr std::int64_t kMaxPixels = 1 << 27;  // 400 MB; no camera has more
-  if (std::int64_t{info->width_px} * info->height_px > kMaxPixels) {
+  if (std::int64_t{info->width_px} * info->height_px > kMaxImagePixels) {
     Fail("the " + format + " has " + Size(info->width_px, info->height_px) + " px: too large");
   }
   // libjpeg makes up the missing rest of a cut image in grey, without an error.
   if (!info->has_end) Fail("the " + format + " is cut off");
 }
 
-cv::Mat EncodedImage(const image_t& message) {
-  cv::Mat image;
-  try {
-    image = cv::imdecode(message.data, cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION);
-  } catch (const cv::Exception& error) {
-    Fail("the " + Format(message) + " cannot be decoded: " + error.err);
-  }
-  if (image.empty()) Fail("the " + Format(message) + " cannot be decoded");
-  return image;
+cv::Mat EncodedImage(const image_t& message) try {
+  return message.pixelformat == kPixelPng ? DecodePng(message.data) : DecodeJpeg(message.data);
+} catch (const std::runtime_error& error) {
+  Fail("the " + Format(message) + " cannot be decoded: " + error.what());
 }
 
 }  // namespace

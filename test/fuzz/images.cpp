@@ -1,8 +1,8 @@
 // A JPEG or PNG, as a driver passes it on, a detector decodes it and the dashboard makes it small.
 #include "dashboard/sensor_frames.hpp"
 #include "fuzz/fuzz_input.hpp"
+#include "images/encoded_image.hpp"
 #include "messaging/convert_image.hpp"
-#include "messaging/encoded_image.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr int kMaxPixels = 1 << 20;  // larger ones take long and are no different

@@ -4,9 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "core/simulation/simulation.hpp"
+#include "images/jpeg.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/log.hpp"
@@ -48,11 +47,7 @@ inline void WriteStopsLog(const Rig& rig, const std::filesystem::path& path) {
       const double time_s = stop * (rig.simulation.hold_s + rig.simulation.move_s) +
                             rig.simulation.hold_s / 2 + 0.1 * i;
       const std::int64_t utime = kSyntheticEpochUtime + std::llround(time_s * 1e6);
-      std::vector<std::uint8_t> jpeg;
-      cv::imencode(".jpg",
-                   simulation.Image(time_s),
-                   jpeg,
-                   {cv::IMWRITE_JPEG_QUALITY, rig.camera_driver.jpeg_quality});
+      const auto jpeg = EncodeJpeg(simulation.Image(time_s), rig.camera_driver.jpeg_quality);
       WriteEvent(rig.channels.lidar_points, ToMessage(simulation.Sweep(time_s), utime, seq), &log);
       WriteEvent(rig.channels.camera_image, EncodedToMessage(jpeg, utime, seq), &log);
       ++seq;

@@ -8,11 +8,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "core/geometry/rigid.hpp"
 #include "core/guidance/worst_error.hpp"
 #include "core/simulation/simulation.hpp"
+#include "images/jpeg.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
@@ -107,7 +107,7 @@ class FastSensors {
  public:
   explicit FastSensors(const Rig& rig) : rig_(rig), bus_(rig.lcm_url) {
     const Simulation simulation(rig.simulation, rig.board, rig.camera);
-    cv::imencode(".jpg", simulation.Image(0), jpeg_);
+    jpeg_ = EncodeJpeg(simulation.Image(0), rig.camera_driver.jpeg_quality);
     sweep_ = simulation.Sweep(0);
   }
 

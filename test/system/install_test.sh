@@ -12,6 +12,11 @@ cd "$folder"
 for part in config/rigs/acfr_vlp16.yaml lcmtypes/image_t.lcm include/voqcal/image_t.hpp tools/spy; do
   [ -s "voqcal/$part" ] || { echo "$part is not installed" >&2; exit 1; }
 done
+for program in voqcal/bin/*; do
+  # OpenCV's VideoCapture needs it; elsewhere it only makes a program start late.
+  [ "$program" = voqcal/bin/camera_driver ] || ! ldd "$program" | grep -E 'imgcodecs|gdal' ||
+    { echo "$program loads it" >&2; exit 1; }
+done
 ! grep -rlI "$(dirname "$build")" voqcal || { echo "names the source tree" >&2; exit 1; }
 
 sed 's/num_poses: 40/num_poses: 6/' voqcal/config/rigs/simulated_vlp16.yaml >rig.yaml

@@ -12,11 +12,10 @@
 #include <thread>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "bench/load_report.hpp"
 #include "common/tool_main.hpp"
 #include "core/simulation/simulation.hpp"
+#include "images/jpeg.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
@@ -56,11 +55,7 @@ Stops Simulate(const Rig& rig) {
     const double time_s =
         i * (rig.simulation.hold_s + rig.simulation.move_s) + rig.simulation.hold_s / 2;
     stops.sweeps.push_back(simulation.Sweep(time_s));
-    stops.jpegs.emplace_back();
-    cv::imencode(".jpg",
-                 simulation.Image(time_s),
-                 stops.jpegs.back(),
-                 {cv::IMWRITE_JPEG_QUALITY, rig.camera_driver.jpeg_quality});
+    stops.jpegs.push_back(EncodeJpeg(simulation.Image(time_s), rig.camera_driver.jpeg_quality));
   }
   return stops;
 }

@@ -12,11 +12,12 @@
 #include <Eigen/Cholesky>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/utility.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "core/board/camera_board.hpp"
 #include "core/geometry/rigid.hpp"
 #include "figures/figures.hpp"
+#include "images/png.hpp"
+#include "rig/atomic_file.hpp"
 #include "support/camera_scenes.hpp"
 
 namespace voqcal {
@@ -164,7 +165,8 @@ void Real(const std::string& folder) {
   std::vector<std::string> files;
   cv::glob(folder + "/*.png", files);
   for (const std::string& file : files) {
-    const cv::Mat image = cv::imread(file, cv::IMREAD_GRAYSCALE);
+    const std::string text = ReadWholeFile(file);
+    const cv::Mat image = DecodePng({text.begin(), text.end()});
     const bool is_ours = DetectCameraBoard(image, test::TestCamera(), board, {}).has_value();
     const bool is_sb = !CornersBy(FindSb, image, board).empty();
     const bool is_classic = !CornersBy(FindClassic, image, board).empty();

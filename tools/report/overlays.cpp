@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "images/jpeg.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/session_scenes.hpp"
@@ -134,8 +134,7 @@ View NearView(const std::vector<Eigen::Vector2d>& outline_px, const cv::Size& im
 
 void WritePicture(const cv::Mat& picture, const std::filesystem::path& path) {
   constexpr int kQuality = 72;
-  std::vector<std::uint8_t> jpeg;
-  cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality});
+  const std::vector<std::uint8_t> jpeg = EncodeJpeg(picture, kQuality);
   WriteFileAtomically(path, {reinterpret_cast<const char*>(jpeg.data()), jpeg.size()});
 }
 

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "messaging/encoded_image.hpp"
+#include "images/encoded_image.hpp"
 
 namespace voqcal {
 namespace {

@@ -1,4 +1,4 @@
-#include "messaging/encoded_image.hpp"
+#include "images/encoded_image.hpp"
 
 #include <algorithm>
 #include <array>

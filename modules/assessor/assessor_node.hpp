@@ -16,9 +16,6 @@
 
 namespace voqcal {
 
-/// Name of the result in a session's folder.
-inline constexpr char kResultName[] = "extrinsic.yaml";
-
 /// CALIB_SAMPLES, EXTRINSIC_AVERAGED and EXTRINSIC_REFINED in, CALIB_ASSESSMENT and extrinsic.yaml
 /// out: scores both extrinsics over the whole scene, the refined one also by leave-one-out, checks
 /// it on the scenes that samples.lcm keeps, and says what is likely wrong.

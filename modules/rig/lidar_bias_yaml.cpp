@@ -5,6 +5,7 @@
 
 #include "rig/atomic_file.hpp"
 #include "rig/number_text.hpp"
+#include "rig/result_file.hpp"
 #include "rig/yaml_reader.hpp"
 
 namespace voqcal {
@@ -70,7 +71,8 @@ std::string LidarBiasYaml(const LidarBias& bias) {
 }
 
 LidarBias ReadLidarBias(const std::filesystem::path& path) {
-  YamlDocument document(path.string(), ReadWholeFile(path));
+  const std::filesystem::path file = ResultFileAt(path);
+  YamlDocument document(file.string(), ReadWholeFile(file));
   YamlSection top(&document);
   YamlSection section = top.Section("lidar_bias");
   LidarBias bias;

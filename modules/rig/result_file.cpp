@@ -133,8 +133,14 @@ std::string ToYaml(const CalibrationResult& result) {
          "\n  version: " + QuotedYaml(made_from.version) + "\n";
 }
 
+std::filesystem::path ResultFileAt(const std::filesystem::path& path) {
+  std::error_code ignored;  // told by whoever reads it
+  return std::filesystem::is_directory(path, ignored) ? path / kResultName : path;
+}
+
 Eigen::Isometry3d ReadExtrinsic(const std::filesystem::path& path) {
-  return ExtrinsicOf(ReadWholeFile(path), path.string());
+  const std::filesystem::path file = ResultFileAt(path);
+  return ExtrinsicOf(ReadWholeFile(file), file.string());
 }
 
 Eigen::Isometry3d ExtrinsicOf(const std::string& text, const std::string& name) {

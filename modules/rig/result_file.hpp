@@ -19,6 +19,9 @@
 
 namespace voqcal {
 
+/// Name of the result in a session's folder.
+inline constexpr char kResultName[] = "extrinsic.yaml";
+
 /// A sample that the result was not made from, and why.
 struct RejectedSample {
   std::int64_t id = 0;
@@ -78,7 +81,10 @@ struct CalibrationResult {
 /// The text of extrinsic.yaml. The same result gives the same bytes; numbers read back exactly.
 std::string ToYaml(const CalibrationResult& result);
 
-/// T_camera_lidar of such a file, or of any YAML file with
+/// `path`; in a folder, which is then a result's, the file in it.
+std::filesystem::path ResultFileAt(const std::filesystem::path& path);
+
+/// T_camera_lidar of such a file (ResultFileAt), or of any YAML file with
 ///     T_camera_lidar: {matrix: 4 rows of 4} or {quaternion_xyzw, translation_m}
 /// Other keys are not looked at. Rotations that were rounded (by up to 1e-3) are made exact.
 ///

@@ -224,6 +224,24 @@ TEST_F(BadInput, AFileInTheWayOfOut) {
   EXPECT_EQ(ReadWholeFile(in_the_way), "precious");
 }
 
+TEST_F(BadInput, AFileThatIsThereIsOverwrittenOnlyIfForced) {
+  const std::string there = folder_.Write("there", "precious");
+  const std::string is_there = there + ": is there already (--force overwrites it)";
+  ExpectRefused({test::Program("import_acfr"), Path("data"), "--rig", rig_, "--out", there},
+                HasSubstr(is_there));
+  std::filesystem::create_directory(Path("result"));
+  folder_.Write("result/extrinsic.yaml",
+                "T_camera_lidar: {quaternion_xyzw: [0, 0, 0, 1], translation_m: [0, 0, 0]}\n");
+  const std::vector<std::string> args = {
+      test::Program("export_extrinsic"), Path("result"), "--format", "ros", "--out", there};
+  ExpectRefused(args, HasSubstr(is_there));
+  EXPECT_EQ(ReadWholeFile(there), "precious");
+  std::vector<std::string> forced = args;
+  forced.push_back("--force");
+  EXPECT_EQ(test::Run(forced).status, 0);
+  EXPECT_THAT(ReadWholeFile(there), HasSubstr("static_transform_publisher"));
+}
+
 TEST_F(BadInput, ARefusedRunLeavesAnEarlierResultAsItIs) {
   std::filesystem::create_directory(Path("out"));
   folder_.Write("out/extrinsic.yaml", "earlier");

@@ -74,7 +74,9 @@ int main(int argc, char** argv) {
   input->add_option(
       "--poses", args.input.poses, "Extracted features: poses.csv of cam_lidar_calibration");
   input->require_option(1);
-  app.add_option("--extrinsic", args.extrinsic, "extrinsic.yaml, or any YAML with T_camera_lidar")
+  app.add_option("--extrinsic",
+                 args.extrinsic,
+                 "A result's folder or its extrinsic.yaml, or any YAML with T_camera_lidar")
       ->required();
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Evaluate(args); });
 }

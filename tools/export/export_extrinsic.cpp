@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/output_file.hpp"
 #include "common/tool_main.hpp"
 #include "rig/atomic_file.hpp"
 #include "rig/extrinsic_text.hpp"
@@ -20,7 +21,7 @@ struct ExportArgs {
   std::string format;
   ExportedExtrinsic extrinsic;
   std::optional<std::filesystem::path> rig;
-  std::optional<std::filesystem::path> out;
+  OutputFile out;
 };
 
 void Export(ExportArgs args) {
@@ -28,8 +29,9 @@ void Export(ExportArgs args) {
   args.extrinsic.T_camera_lidar = ReadExtrinsic(args.result);
   if (args.rig) args.extrinsic.camera = LoadRig(*args.rig).camera;
   const std::string text = ExtrinsicText(args.format, args.extrinsic);
-  if (args.out) {
-    WriteFileAtomically(*args.out, text);
+  if (!args.out.path.empty()) {
+    args.out.Prepare();
+    WriteFileAtomically(args.out.path, text);
   } else {
     std::cout << text;
   }
@@ -43,7 +45,9 @@ int main(int argc, char** argv) {
   voqcal::ExportArgs args;
   std::string formats;
   for (const std::string& name : voqcal::ExportFormats()) formats += " " + name;
-  app.add_option("result", args.result, "extrinsic.yaml, or any YAML with T_camera_lidar")
+  app.add_option("result",
+                 args.result,
+                 "A result's folder or its extrinsic.yaml, or any YAML with T_camera_lidar")
       ->required();
   app.add_option("--format", args.format, "One of:" + formats)->required();
   app.add_option("--parent", args.extrinsic.parent, "Name of the lidar's frame")
@@ -51,6 +55,6 @@ int main(int argc, char** argv) {
   app.add_option("--child", args.extrinsic.child, "Name of the camera's optical frame")
       ->capture_default_str();
   app.add_option("--rig", args.rig, "The rig file (YAML): adds the lens where the format has one");
-  app.add_option("--out", args.out, "File to write; without it the terminal");
+  voqcal::AddOutputFile(&app, "File to write; without it the terminal", &args.out);
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Export(args); });
 }

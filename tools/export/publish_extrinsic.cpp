@@ -60,7 +60,9 @@ int main(int argc, char** argv) {
       "the camera's coordinates to the lidar's, on the rig's channel camera_to_lidar.",
       "publish_extrinsic");
   voqcal::PublishArgs args;
-  app.add_option("result", args.result, "extrinsic.yaml, or any YAML with T_camera_lidar")
+  app.add_option("result",
+                 args.result,
+                 "A result's folder or its extrinsic.yaml, or any YAML with T_camera_lidar")
       ->required();
   app.add_option("--rig", args.rig, "The rig file (YAML): network and channel")->required();
   app.add_option("--lcm-url", args.lcm_url, "Instead of the rig file's");

@@ -8,6 +8,7 @@
 
 #include <system_error>
 
+#include "common/output_file.hpp"
 #include "common/progress.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
@@ -25,7 +26,7 @@ namespace {
 struct ImportArgs {
   std::filesystem::path session;
   std::filesystem::path rig;
-  std::filesystem::path out;
+  OutputFile out;
   double rate_hz = 2.0;
 };
 
@@ -103,13 +104,15 @@ void WriteFrames(const ImportArgs& args, const Rig& rig, const std::filesystem::
 
 void Import(const ImportArgs& args) {
   const Rig rig = LoadRig(args.rig);
-  const ScratchFolder scratch(args.out);
+  args.out.Prepare();
+  const ScratchFolder scratch(args.out.path);
   const std::filesystem::path log = scratch.path() / "import.lcm";
   WriteFrames(args, rig, log);
   std::error_code error;
-  std::filesystem::rename(log, args.out, error);
-  if (error) throw std::runtime_error(args.out.string() + ": cannot write: " + error.message());
-  std::cout << "written\n  " << args.out.string() << '\n';
+  std::filesystem::rename(log, args.out.path, error);
+  if (error)
+    throw std::runtime_error(args.out.path.string() + ": cannot write: " + error.message());
+  std::cout << "written\n  " << args.out.path.string() << '\n';
 }
 
 }  // namespace
@@ -123,7 +126,7 @@ int main(int argc, char** argv) {
   voqcal::ImportArgs args;
   app.add_option("session", args.session, "The session's folder")->required();
   app.add_option("--rig", args.rig, "The rig file (YAML): camera and channels")->required();
-  app.add_option("--out", args.out, "The log to write")->required();
+  voqcal::AddOutputFile(&app, "The log to write", &args.out)->required();
   app.add_option("--rate", args.rate_hz, "Poses a second when the log is replayed")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

@@ -8,18 +8,21 @@ import { FileHandleWritable } from "@mcap/nodejs";
 import { UserError, runCommand } from "./lib/command.mjs";
 import { boardLines, calibration, cloud, image, lidarToCamera } from "./lib/foxglove_messages.mjs";
 import { foxgloveType } from "./lib/foxglove_protobuf.mjs";
+import { prepareOutput } from "./lib/output_file.mjs";
 import { readSession } from "./lib/session.mjs";
 
 const command = {
   name: "export_mcap",
   numPositional: 1,
   required: ["out"],
-  options: { out: { type: "string" } },
-  usage: `usage: tools/export_mcap RESULT --out FILE.mcap
+  options: { out: { type: "string" }, force: { type: "boolean", default: false } },
+  usage: `usage: tools/export_mcap RESULT --out FILE.mcap [--force]
   RESULT      the folder that calibrate wrote: result.json and samples.lcm
   --out FILE  MCAP with Foxglove's schemas (protobuf), for Foxglove and Rerun:
               /tf (camera in lidar), /lidar/points, /camera/image, /camera/calibration,
-              /lidar/board and /camera/board (the board's outline as each sensor saw it)`,
+              /lidar/board and /camera/board (the board's outline as each sensor saw it);
+              folders are made if missing
+  --force     overwrite the file if it is there`,
 };
 
 function readResult(folder) {
@@ -81,9 +84,10 @@ async function writeSample(writer, result, { sample, sweep, image: picture }) {
   }
 }
 
-await runCommand(command, async ({ out }, [folder]) => {
+await runCommand(command, async ({ out, force }, [folder]) => {
   const result = readResult(folder);
   const samples = readSession(join(folder, "samples.lcm"));
+  prepareOutput(out, force);
   const unfinished = `${out}.unfinished-${process.pid}`;
   const file = await open(unfinished, "w");
   try {

@@ -3,6 +3,7 @@
 import { UserError, runCommand } from "./lib/command.mjs";
 import { LogWriter } from "./lib/lcm_log.mjs";
 import { voqcalTypes } from "./lib/lcm_types.mjs";
+import { prepareOutput } from "./lib/output_file.mjs";
 import { openRecording } from "./lib/recordings.mjs";
 import {
   CAMERA_INFO,
@@ -23,14 +24,16 @@ const command = {
     "image-topic": { type: "string" },
     "camera-info-topic": { type: "string" },
     out: { type: "string" },
+    force: { type: "boolean", default: false },
     "lidar-channel": { type: "string", default: "LIDAR_POINTS" },
     "image-channel": { type: "string", default: "CAMERA_IMAGE" },
     "camera-info-channel": { type: "string", default: "CAMERA_INFO" },
     "print-camera": { type: "boolean", default: false },
   },
-  usage: `usage: tools/import_ros RECORDING --out LOG [--lidar-topic NAME] [--image-topic NAME]
+  usage: `usage: tools/import_ros RECORDING --out LOG [--force] [--lidar-topic NAME] [--image-topic NAME]
   RECORDING                    a ROS 1 bag (.bag) or a ROS 2 recording (.mcap)
-  --out LOG                    the LCM log to write
+  --out LOG                    the LCM log to write; folders are made if missing
+  --force                      overwrite the log if it is there
   --lidar-topic NAME           of type PointCloud2; may be left out if there is one only
   --image-topic NAME           of type Image or CompressedImage; the same
   --camera-info-topic NAME     of type CameraInfo: goes into the log too
@@ -117,6 +120,7 @@ async function writeLog(path, recording, plan, out) {
 async function importRecording(path, recording, flags) {
   if (flags.out === undefined) throw new UserError("--out is required: the LCM log to write");
   const plan = conversions(path, recording.topics, flags);
+  prepareOutput(flags.out, flags.force);
   await writeLog(path, recording, plan, flags.out);
   for (const [topic, { channel, count }] of plan) {
     process.stdout.write(`${channel}: ${count} messages of ${topic}\n`);

@@ -199,6 +199,15 @@ TEST(ToYaml, GivesAQuaternionOfTheSameRotationWithPositiveW) {
 
 TEST(ToYaml, GivesTheSameBytesEachTime) { EXPECT_EQ(ToYaml(SomeResult()), ToYaml(SomeResult())); }
 
+TEST(ReadExtrinsic, TakesTheFolderOfAResult) {
+  const test::TemporaryFolder folder;
+  EXPECT_THAT(test::ErrorOf([&] { ReadExtrinsic(folder.path()); }),
+              HasSubstr("extrinsic.yaml: cannot be read"));
+  const std::filesystem::path file = folder.Write("extrinsic.yaml", ToYaml(SomeResult()));
+  EXPECT_EQ(ReadExtrinsic(folder.path()).matrix(), ReadExtrinsic(file).matrix());
+  EXPECT_NO_THROW(ReadLidarBias(folder.path()));
+}
+
 TEST(ReadExtrinsic, ReadsWhatToYamlWrites) {
   const test::TemporaryFolder folder;
   const auto path = folder.Write("extrinsic.yaml", ToYaml(SomeResult()));

@@ -159,6 +159,14 @@ function expectRefused(args, ...parts) {
   assert.deepEqual(readdirSync(folder), before);
 }
 
+test("a file that is there already is overwritten only if asked", () => {
+  writeSession("twice", picture(1196444237, Buffer.from("a jpeg"), 0));
+  const args = [path("twice"), "--out", path("twice.mcap")];
+  execFileSync(program, args);
+  expectRefused(args, "twice.mcap: is there already (--force overwrites it)");
+  execFileSync(program, [...args, "--force"]);
+});
+
 test("folders that are no results", () => {
   expectRefused([folder, "--out", path("x.mcap")], "result.json", "calibrate");
   mkdirSync(path("other"));

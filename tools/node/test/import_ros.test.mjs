@@ -96,7 +96,7 @@ const events = (log) =>
     message: types.decode(TYPE_OF[channel], bytes),
   }));
 const importTo = (name, ...flags) => {
-  execFileSync(program, [path(name), "--out", path("out.lcm"), ...flags]);
+  execFileSync(program, [path(name), "--force", "--out", path("out.lcm"), ...flags]);
   return events(path("out.lcm"));
 };
 
@@ -194,6 +194,19 @@ test("files of another kind", () => {
   expectRefused([path("text")], "neither a ROS 1 bag nor an MCAP file");
   writeFileSync(path("old.db3"), "SQLite format 3\0...");
   expectRefused([path("old.db3")], "ros2 bag convert");
+});
+
+test("a log that is there already is overwritten only if asked; folders are made", async () => {
+  await WRITERS.mcap("again.mcap", () => rawRecording(false));
+  const run = (...flags) => spawnSync(program, [path("again.mcap"), ...flags], { encoding: "utf8" });
+  writeFileSync(path("precious.lcm"), "precious");
+  const refused = run("--out", path("precious.lcm"));
+  assert.equal(refused.status, 1);
+  assert.match(refused.stderr, /precious.lcm: is there already \(--force overwrites it\)\n$/);
+  assert.equal(readFileSync(path("precious.lcm"), "utf8"), "precious");
+  assert.equal(run("--out", path("precious.lcm"), "--force").status, 0);
+  assert.equal(run("--out", path("new/folder/out.lcm")).status, 0);
+  assert.deepEqual(readFileSync(path("new/folder/out.lcm")), readFileSync(path("precious.lcm")));
 });
 
 test("images that cannot be taken", async () => {

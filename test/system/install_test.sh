@@ -9,7 +9,7 @@ unset VOQCAL_BIN
 cmake --install "$build" --prefix "$folder/voqcal" >/dev/null
 cd "$folder"
 
-for part in config/rigs/acfr_vlp16.yaml lcmtypes/image_t.lcm include/voqcal/image_t.hpp tools/spy; do
+for part in lib/report.html.j2.code config/rigs/acfr_vlp16.yaml lcmtypes/image_t.lcm include/voqcal/image_t.hpp tools/spy; do
   [ -s "voqcal/$part" ] || { echo "$part is not installed" >&2; exit 1; }
 done
 for program in voqcal/bin/*; do
@@ -26,3 +26,4 @@ voqcal/tools/isolated timeout --preserve-status --signal=INT 3 voqcal/modules/vo
 voqcal/tools/isolated voqcal/tools/run_rig rig.yaml --session live --record
 voqcal/bin/calibrate --rig rig.yaml --log live/raw.lcm --out offline
 cmp live/extrinsic.yaml offline/extrinsic.yaml
+[ -s offline/report.html ]

@@ -65,6 +65,40 @@ TEST_F(SimulatedReport, IsTheSameEachTime) {
   }
 }
 
+TEST_F(SimulatedReport, IsTheSameWhateverPythonsTheUserHas) {
+  folder_.Write("jinja2.py", "raise ImportError('not the one')");
+  const test::Outcome outcome = test::Run({"/usr/bin/env",
+                                           "PYTHONPATH=" + folder_.path().string(),
+                                           "PYTHONHOME=/nowhere",
+                                           test::Program("calibrate"),
+                                           "--rig",
+                                           rig_,
+                                           "--log",
+                                           Path("raw.lcm"),
+                                           "--out",
+                                           Path("again")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(ReadWholeFile(Path("again/report.html")), ReadWholeFile(Path("out/report.html")));
+}
+
+// By make_report.py alone, without pictures.
+TEST_F(SimulatedReport, IsTheSameWithoutTheTemplatesCode) {
+  const std::string built = test::Program("../lib/report.html.j2.code");
+  const std::string cut = folder_.Write("cut.code", ReadWholeFile(built).substr(0, 1000));
+  const auto page = [this](const std::string& code) {
+    const test::Outcome outcome = test::Run({test::Tool("report/make_report.py"),
+                                             Path("out/result.json"),
+                                             folder_.path().string(),
+                                             Path("page.html"),
+                                             code});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return ReadWholeFile(Path("page.html"));
+  };
+  const std::string by_code = page(built);
+  EXPECT_EQ(page(Path("none")), by_code);
+  EXPECT_EQ(page(cut), by_code);
+}
+
 TEST_F(SimulatedReport, HasAPictureOfEachSample) {
   const std::string page = ReadWholeFile(Path("out/report.html"));
   const auto json = nlohmann::json::parse(ReadWholeFile(Path("out/result.json")));

@@ -11,9 +11,13 @@
 namespace voqcal {
 
 std::string ScriptOfTools(const std::string& script) {
+  const std::string installed = FileBesidePrograms("tools/" + script);
+  return std::filesystem::exists(installed) ? installed : VOQCAL_TOOLS_FOLDER "/" + script;
+}
+
+std::string FileBesidePrograms(const std::string& file) {
   const std::filesystem::path bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  const std::filesystem::path installed = bin.parent_path() / "tools" / script;
-  return std::filesystem::exists(installed) ? installed.string() : VOQCAL_TOOLS_FOLDER "/" + script;
+  return bin.parent_path() / file;
 }
 
 std::string RunProgram(const std::vector<std::string>& args) {

@@ -1,7 +1,9 @@
-#!/usr/bin/python3 -B
-"""make_report.py RESULT_JSON OVERLAYS OUT: report.html of a result and the pictures of its samples.
+#!/usr/bin/python3 -EsSB
+"""make_report.py RESULT_JSON OVERLAYS OUT [CODE]: report.html of a result and the pictures of its samples.
+make_report.py --compile CODE: the template as code, which saves compiling it for each report.
 
-Debian's python3-jinja2; no network, no scripts in the page, the same bytes for the same input.
+No network, no scripts in the page, the same bytes for the same input. Python's flags keep it to Debian's packages: of the
+user's (PYTHONPATH, pip, conda) none is seen, whatever is in them.
 """
 
 import base64
@@ -10,9 +12,10 @@ import os
 import pathlib
 import sys
 
-import jinja2
+sys.path.append("/usr/lib/python3/dist-packages")
+import jinja2  # noqa: E402  (of Debian's python3-jinja2)
 
-import svg
+import svg  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 AXES = ("x", "y", "z")
@@ -164,14 +167,35 @@ def predicted_figure(errors):
     return svg.curves("Predicted error by range", "range of a point (m)", "predicted error (mm)", lines, True, True)
 
 
-def report(data, overlays):
-    result, samples = data["result"], data["samples"]
+class Code(jinja2.BytecodeCache):
+    """A template's code in a file. jinja2 passes it over if it is another template's or another Python's."""
+
+    def __init__(self, path, is_written):
+        self.path, self.is_written = pathlib.Path(path), is_written
+
+    def load_bytecode(self, bucket):
+        if not self.is_written and self.path.is_file():
+            with self.path.open("rb") as file:
+                bucket.load_bytecode(file)
+
+    def dump_bytecode(self, bucket):
+        if self.is_written:
+            with self.path.open("wb") as file:
+                bucket.write_bytecode(file)
+
+
+def page(code=None):
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE), autoescape=True, undefined=jinja2.StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
+        # Not by its path, which would be in the code.
+        loader=jinja2.FunctionLoader(lambda name: (HERE / name).read_text(encoding="utf-8")), bytecode_cache=code,
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True,
     )
     environment.filters["minus"] = lambda text: str(text).replace("-", "\u2212")
-    template = environment.get_template("report.html.j2")
+    return environment.get_template("report.html.j2")
+
+
+def report(data, overlays, template):
+    result, samples = data["result"], data["samples"]
     return template.render(
         data=data,
         result=result,
@@ -191,15 +215,18 @@ def report(data, overlays):
     )
 
 
-def main(result_json, overlays, out):
+def main(result_json, overlays, out, code=None):
     data = json.loads(pathlib.Path(result_json).read_text(encoding="utf-8"))
-    text = report(data, pathlib.Path(overlays))
+    text = report(data, pathlib.Path(overlays), page(code and Code(code, is_written=False)))
     unfinished = pathlib.Path(f"{out}.unfinished")
     unfinished.write_text(text, encoding="utf-8")
     os.replace(unfinished, out)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 4:
-        sys.exit("usage: make_report.py RESULT_JSON OVERLAYS_FOLDER OUT")
-    main(*sys.argv[1:])
+    if len(sys.argv) == 3 and sys.argv[1] == "--compile":
+        page(Code(sys.argv[2], is_written=True))
+    elif len(sys.argv) in (4, 5):
+        main(*sys.argv[1:])
+    else:
+        sys.exit("usage: make_report.py RESULT_JSON OVERLAYS_FOLDER OUT [CODE] | --compile CODE")

@@ -16,8 +16,11 @@ std::string WriteReport(const Rig& rig,
   WriteFileAtomically(json, ResultJson(rig, run));
   const ScratchFolder overlays(folder / "overlays");
   WriteOverlays(rig, run, folder / kSamplesLogName, overlays.path());
-  return RunProgram(
-      {ScriptOfTools("report/make_report.py"), json, overlays.path(), folder / kReportName});
+  return RunProgram({ScriptOfTools("report/make_report.py"),
+                     json,
+                     overlays.path(),
+                     folder / kReportName,
+                     FileBesidePrograms("lib/report.html.j2.code")});
 }
 
 }  // namespace voqcal

@@ -1,7 +1,7 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -EsB
 """Plots what voq_study wrote: plot_study.py FOLDER. Each plot is a PNG and an SVG beside the tables.
 
-The first line is Debian's own Python, for which tools/setup installs matplotlib.
+The first line is Debian's own Python, for which tools/setup installs matplotlib, without the user's packages.
 """
 import csv
 import pathlib

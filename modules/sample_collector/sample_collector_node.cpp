@@ -156,7 +156,9 @@ void SampleCollectorNode::OnCommand(const command_t& message) {
 void SampleCollectorNode::Discard(const command_t& message) {
   const std::optional<std::int64_t> id = session_.Discard(message.sample_id);
   if (!id) {
-    const std::string reason = "no sample " + std::to_string(message.sample_id) + " to discard";
+    const std::string reason = samples().empty()
+                                   ? "there is no sample to discard"
+                                   : "there is no sample " + std::to_string(message.sample_id);
     Announce(message.utime, "rejected", message.sample_id, reason);
     return;
   }

@@ -1,11 +1,13 @@
 // command: tells the sample collector of a running rig what to do.
 
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "common/tool_main.hpp"
 #include "messaging/bus.hpp"
@@ -13,12 +15,18 @@
 #include "rig/rig.hpp"
 #include "voqcal/assessment_t.hpp"
 #include "voqcal/command_t.hpp"
+#include "voqcal/event_t.hpp"
 #include "voqcal/samples_t.hpp"
 
 namespace voqcal {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// A collector republishes each second, and takes up to two to see that no frame comes any more.
+constexpr std::chrono::seconds kPatience{3};
+
+constexpr char kNoAnswer[] = "the sample collector did not answer: is the rig running?";
 
 struct CommandArgs {
   std::filesystem::path rig;
@@ -28,7 +36,8 @@ struct CommandArgs {
   double wait_s = 0;
 };
 
-void Send(const CommandArgs& args, const Rig& rig, Bus* bus) {
+/// @return the command's utime.
+std::int64_t Send(const CommandArgs& args, const Rig& rig, Bus* bus) {
   command_t message{};
   message.utime = std::chrono::duration_cast<std::chrono::microseconds>(
                       std::chrono::system_clock::now().time_since_epoch())
@@ -36,6 +45,55 @@ void Send(const CommandArgs& args, const Rig& rig, Bus* bus) {
   message.command = args.command;
   message.sample_id = args.sample_id;
   bus->Publish(rig.channels.calib_command, message);
+  return message.utime;
+}
+
+/// What an event says of the command that was sent at `utime`; nothing if it is about another
+/// thing.
+/// @throws std::runtime_error with the reason, if the collector refused it.
+std::optional<std::string> OutcomeOf(const std::string& command,
+                                     std::int64_t utime,
+                                     const event_t& event) {
+  const std::string sample = "sample " + std::to_string(event.sample_id);
+  if (command == "capture" && event.kind == "accepted") {
+    return sample + " taken" + (event.reason.empty() ? "" : ": " + event.reason);
+  }
+  if (command == "finish" && event.kind == "finished") return "finished";
+  if (event.utime != utime) return {};
+  if (event.kind == "discarded") return sample + " discarded";
+  if (event.kind == "reset") return "all samples taken away";
+  if (event.kind == "rejected") throw std::runtime_error(event.reason);
+  return {};
+}
+
+void SendAndTellOutcome(const CommandArgs& args, const Rig& rig, Bus* bus) {
+  std::optional<samples_t> samples;
+  std::vector<event_t> events;
+  bus->Subscribe<samples_t>(
+      rig.channels.calib_samples, Queue::kState, [&samples](const samples_t& m) { samples = m; });
+  bus->Subscribe<event_t>(rig.channels.calib_event, Queue::kEvery, [&events](const event_t& m) {
+    events.push_back(m);
+  });
+  const std::int64_t utime = Send(args, rig, bus);
+  std::string last_reason;
+  for (const Clock::time_point end = Clock::now() + kPatience; Clock::now() < end;) {
+    bus->HandleOnce(std::chrono::milliseconds(100));
+    for (const event_t& event : events) {
+      if (const auto outcome = OutcomeOf(args.command, utime, event)) {
+        std::puts(outcome->c_str());
+        return;
+      }
+      last_reason = event.reason;
+    }
+    events.clear();
+  }
+  if (!samples) throw std::runtime_error(kNoAnswer);
+  if (args.command != "capture")
+    throw std::runtime_error("sent, but nothing is known to have come of it");
+  throw std::runtime_error(
+      "no sample yet: " +
+      (last_reason.empty() ? std::string("no pair of frames came") : last_reason) +
+      "; the next frames that show the board to both sensors will be one");
 }
 
 // Until the collector says "finished" and the assessor has judged that very set of samples. The
@@ -54,9 +112,8 @@ void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
   Clock::time_point next_send = Clock::now();
   while (samples.is_finished == 0 || !IsMadeFrom(samples, assessment)) {
     if (Clock::now() > end) {
-      throw std::runtime_error(samples.is_finished == 0
-                                   ? "the sample collector did not answer: is the rig running?"
-                                   : "the assessor did not answer: is it running?");
+      throw std::runtime_error(
+          samples.is_finished == 0 ? kNoAnswer : "the assessor did not answer: is it running?");
     }
     if (samples.is_finished == 0 && Clock::now() >= next_send) {
       Send(args, rig, bus);
@@ -77,7 +134,7 @@ void Command(const CommandArgs& args) {
   if (args.command == "finish" && args.wait_s > 0) {
     FinishAndWait(args, rig, &bus);
   } else {
-    Send(args, rig, &bus);
+    SendAndTellOutcome(args, rig, &bus);
   }
 }
 
@@ -85,7 +142,11 @@ void Command(const CommandArgs& args) {
 }  // namespace voqcal
 
 int main(int argc, char** argv) {
-  CLI::App app("Sends one command to the sample collector of a running rig.", "command");
+  CLI::App app(
+      "Sends one command to the sample collector of a running rig, and says what came of it; "
+      "status 1 "
+      "if nothing did.",
+      "command");
   voqcal::CommandArgs args;
   app.add_option("command",
                  args.command,

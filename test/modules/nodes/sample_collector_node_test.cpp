@@ -142,7 +142,7 @@ TEST_F(SampleCollectorNodeTest, DiscardsTheNewestOrTheNamedSample) {
   EXPECT_EQ(last().num_samples, 1);
   Command("discard", 1);
   EXPECT_EQ(last_event().kind, "rejected");
-  EXPECT_EQ(last_event().reason, "no sample 1 to discard");
+  EXPECT_EQ(last_event().reason, "there is no sample 1");
   EXPECT_THAT(Ids(), ElementsAre(2));
 }
 

@@ -59,6 +59,16 @@ TEST(StatusPage, NamesWhoWasNeverHeard) {
                     HasSubstr("\nlost    nothing\n")));
 }
 
+TEST(StatusPage, ADriverThatEndedBeforeAnyoneListenedIsNotSilent) {
+  StatusPage page({"lidar_driver", "camera_driver"}, {"lidar_driver"});
+  EXPECT_EQ(page.HealthOf("lidar_driver", At(0)), Health::kGood);
+  EXPECT_THAT(
+      page.Text(At(0)),
+      AllOf(HasSubstr("lidar_driver           done\n"), HasSubstr("\nsilent  camera_driver\n")));
+  page.Take(Status("lidar_driver", 1, "running"), At(0));  // it was started again
+  EXPECT_EQ(page.HealthOf("lidar_driver", At(9)), Health::kSilent);
+}
+
 TEST(StatusPage, IsSilentAfterThreeSecondsWithoutAHeartbeat) {
   StatusPage page({"assessor"});
   page.Take(Status("assessor", 1, "running"), At(10));

@@ -23,6 +23,7 @@ struct StatusArgs {
   std::filesystem::path rig;
   std::optional<std::string> lcm_url;
   std::vector<std::string> modules = AllModuleNames();
+  std::vector<std::string> ended;
   bool is_once = false;
 };
 
@@ -64,7 +65,7 @@ void PrintEachSecond(Bus* bus, StatusPage* page) {
 void ShowStatus(const StatusArgs& args) {
   const Rig rig = LoadRig(args.rig);
   Bus bus(args.lcm_url.value_or(rig.lcm_url));
-  StatusPage page(args.modules);
+  StatusPage page(args.modules, args.ended);
   Subscribe(rig.channels, &bus, &page);
   if (args.is_once) {
     PrintOnce(args, &bus, &page);
@@ -81,9 +82,12 @@ int main(int argc, char** argv) {
       "Shows every module of a running rig: state, rates, losses, results and misses by reason.",
       "status");
   voqcal::StatusArgs args;
-  app.add_option("--rig,rig", args.rig, "The rig file (YAML)")->required();
+  app.add_option("rig", args.rig, "The rig file (YAML)")->required();
   app.add_option("--lcm-url", args.lcm_url, "Instead of the rig file's");
   app.add_option("--modules", args.modules, "Those that should be heard; without it all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(voqcal::AllModuleNames()));
+  app.add_option("--ended", args.ended, "Those that are known to have ended as planned")
       ->delimiter(',')
       ->check(CLI::IsMember(voqcal::AllModuleNames()));
   app.add_flag("--once",

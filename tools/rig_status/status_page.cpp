@@ -77,7 +77,8 @@ std::vector<std::string> AllModuleNames() {
           "dashboard"};
 }
 
-StatusPage::StatusPage(std::vector<std::string> modules) : modules_(std::move(modules)) {}
+StatusPage::StatusPage(std::vector<std::string> modules, std::vector<std::string> ended)
+    : modules_(std::move(modules)), ended_(std::move(ended)) {}
 
 void StatusPage::Take(const module_status_t& status, Time now) {
   const auto found = heard_.find(status.module);
@@ -102,7 +103,9 @@ void StatusPage::Take(const event_t& event) {
 
 StatusPage::Health StatusPage::HealthOf(const std::string& module, Time now) const {
   const auto found = heard_.find(module);
-  if (found == heard_.end()) return Health::kSilent;
+  if (found == heard_.end()) {
+    return IsKnownToHaveEnded(module) ? Health::kGood : Health::kSilent;
+  }
   const Heard& heard = found->second;
   if (StartsWith(heard.status.state, "failed")) return Health::kFailed;
   if (HasEnded(heard.status)) return Health::kGood;
@@ -129,7 +132,9 @@ std::string StatusPage::Text(Time now) const {
 
 std::string StatusPage::ModuleText(const std::string& module, Time now) const {
   const auto found = heard_.find(module);
-  if (found == heard_.end()) return Format("%-22s not heard\n", module.c_str());
+  if (found == heard_.end()) {
+    return Format("%-22s %s\n", module.c_str(), IsKnownToHaveEnded(module) ? "done" : "not heard");
+  }
   const Heard& heard = found->second;
   std::string text = Format("%-22s %s", module.c_str(), heard.status.state.c_str());
   if (HealthOf(module, now) == Health::kSilent) {
@@ -145,6 +150,10 @@ std::string StatusPage::ModuleText(const std::string& module, Time now) const {
   text += '\n';
   for (const channel_status_t& channel : heard.status.channels) text += ChannelText(channel);
   return text + CountersText(heard.status.counters);
+}
+
+bool StatusPage::IsKnownToHaveEnded(const std::string& module) const {
+  return std::find(ended_.begin(), ended_.end(), module) != ended_.end();
 }
 
 std::string StatusPage::SilentText(Time now) const {

@@ -23,7 +23,8 @@ class StatusPage {
   using Time = std::chrono::steady_clock::time_point;
 
   /// @param modules  those that should be heard, in the page's order. Others are listed too.
-  explicit StatusPage(std::vector<std::string> modules);
+  /// @param ended    those that are known to have ended as planned; heard, they count as heard.
+  explicit StatusPage(std::vector<std::string> modules, std::vector<std::string> ended = {});
 
   void Take(const module_status_t& status, Time now);
   void Take(const event_t& event);
@@ -51,8 +52,10 @@ class StatusPage {
   std::string ModuleText(const std::string& module, Time now) const;
   std::string SilentText(Time now) const;
   std::string LostText() const;
+  bool IsKnownToHaveEnded(const std::string& module) const;
 
   std::vector<std::string> modules_;
+  std::vector<std::string> ended_;
   std::map<std::string, Heard> heard_;
   std::deque<event_t> events_;  ///< The newest last.
 };

@@ -151,7 +151,9 @@ export function showEvents({ events }: Events): void {
 
 export function showModules({ modules }: Modules): void {
   const bad = modules.filter((module) => module.health !== "good" || module.num_lost > 0);
-  setText("modules-summary", bad.length === 0 ? `All ${modules.length} modules run` : bad.map((module) =>
+  const ended = modules.filter((module) => module.state === "done").map((module) => module.name);
+  const good = ended.length === 0 ? `All ${modules.length} modules run` : `All is well; ${ended.join(", ")} finished`;
+  setText("modules-summary", bad.length === 0 ? good : bad.map((module) =>
     module.health === "good" ? `${module.name} lost ${module.num_lost} messages` : `${module.name} is ${module.health}`).join("; "));
   byId("modules-panel").dataset.state = bad.length === 0 ? "good" : "bad";
   byId("modules").replaceChildren(

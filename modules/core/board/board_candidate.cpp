@@ -224,7 +224,7 @@ Expected<LidarBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
   // the beams meet it.
   for (const double first_blur_m : {SearchBlurM(m.model) / 2, 3 * m.model.blur_m, 0.0}) {
     const Agreement agreement = AgreementOf(m);
-    if (!agreement.IsBoardLike(kRoughly)) return Because(LidarBoardMiss::kSizeMismatch);
+    if (!agreement.IsBoardLike()) return Because(LidarBoardMiss::kSizeMismatch);
     const auto edges = CountEdges(outline_beams, m.model, m.outline.pose);
     if (auto open = OpenSide(m, beams, edges, agreement, kRoughly)) return *open;
     if (!RefinePlane(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);

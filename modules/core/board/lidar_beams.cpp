@@ -10,7 +10,7 @@ constexpr std::uint8_t kNoSector = 255;
 
 double SlopeOf(double x, double y, double z) {
   constexpr double kTiny = 1e-9;  // straight up or down is steep enough
-  return z / std::max(std::hypot(x, y), kTiny);
+  return z / std::max(std::sqrt(x * x + y * y), kTiny);
 }
 
 std::size_t SectorOf(double pseudo_azimuth, std::size_t num_sectors) {

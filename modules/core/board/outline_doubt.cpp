@@ -60,7 +60,7 @@ Moments PosteriorAlong(const std::vector<OutlineBeam>& beams,
   std::array<double, 2 * kHalfSteps + 1> log_likelihood{};
   for (int i = -kHalfSteps; i <= kHalfSteps; ++i) {
     log_likelihood[static_cast<std::size_t>(i + kHalfSteps)] =
-        EvaluateOutline(beams, model, MovedBy(fit, i * step_m * direction, model)).log_likelihood;
+        OutlineLogLikelihood(beams, model, MovedBy(fit, i * step_m * direction, model));
   }
   const double largest = *std::max_element(log_likelihood.begin(), log_likelihood.end());
   double sum = 0.0;
@@ -144,12 +144,13 @@ bool HasRivalSize(const std::vector<OutlineBeam>& beams,
                   const Eigen::Vector2d& grows) {
   constexpr std::array<double, 3> kOffM = {0.0, 0.06, 0.12};
   constexpr double kBetter = 4.0;          // ln 50
+  constexpr double kWithinReach = 20.0;    // refining a rival gains less: 3 as a rule
   constexpr std::size_t kNumBeams = 1000;  // tell another size as well as more do
   std::vector<OutlineBeam> few;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (IsInShare(i, kNumBeams, beams.size())) few.push_back(beams[i]);
   }
-  const double to_beat = EvaluateOutline(few, model, best).log_likelihood + kBetter;
+  const double to_beat = OutlineLogLikelihood(few, model, best) + kBetter;
   for (const double off_x_m : kOffM) {
     for (const double off_y_m : kOffM) {
       if (off_x_m == 0.0 && off_y_m == 0.0) continue;
@@ -158,6 +159,7 @@ bool HasRivalSize(const std::vector<OutlineBeam>& beams,
       other.width_m += off_m.x();
       other.height_m += off_m.y();
       const OutlineFit rough = SharpenOutline(few, other, best.pose, SearchBlurM(model) / 2);
+      if (OutlineLogLikelihood(few, other, rough) < to_beat - kWithinReach) continue;
       if (RefineOutline(few, other, rough.pose).log_likelihood > to_beat) return true;
     }
   }

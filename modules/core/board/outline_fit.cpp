@@ -1,14 +1,12 @@
 #include "core/board/outline_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include "core/board/lidar_beams.hpp"
 
@@ -16,145 +14,6 @@ namespace voqcal {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-using Vector5d = Eigen::Matrix<double, 5, 1>;
-
-/// EvaluateOutline with the gradient that Refine climbs.
-struct Climb {
-  OutlineFit fit;
-  Vector5d gradient = Vector5d::Zero();
-};
-
-/// What is expected of a parameter: a Gaussian about it.
-void Expect(double value, double mean, double sigma, Eigen::Index row, Climb* climb) {
-  const double surprise = (value - mean) / sigma;
-  climb->fit.log_likelihood -= surprise * surprise / 2;
-  climb->gradient[row] -= surprise / sigma;
-  climb->fit.information(row, row) += 1 / (sigma * sigma);
-}
-
-/// L(t) of the model; beyond kFlat it differs from a step by 1e-6: no slope left.
-constexpr double kFlat = 14.0;
-
-/// L at two opposite sides: their arguments always add to the same, so one exponential does both.
-struct OppositeSides {
-  double sum;  // of the two arguments
-  double exp_minus_sum;
-
-  explicit OppositeSides(double sum_of_both) : sum(sum_of_both), exp_minus_sum(std::exp(-sum)) {}
-
-  void Logistic(double t, double* L, double* L_opposite) const {
-    const bool is_nearer = t <= sum - t;
-    const double nearer = is_nearer ? t : sum - t;
-    *L = *L_opposite = 1.0;
-    if (nearer > kFlat) return;
-    const double e = std::exp(-nearer);
-    (is_nearer ? *L : *L_opposite) = 1.0 / (1.0 + e);
-    (is_nearer ? *L_opposite : *L) = e / (e + exp_minus_sum);
-  }
-};
-
-/// Sums over beams. A logarithm is taken of many probabilities' product at once.
-struct BeamSums {
-  double log_likelihood = 0.0;
-  double likelihood = 1.0;
-  std::array<double, 5> gradient{};
-  std::array<double, 15> information{};  // lower triangle, row by row
-
-  void Add(double p_hit, bool is_hit, const std::array<double, 5>& J) {
-    constexpr double kTiny = 1e-200;
-    likelihood *= is_hit ? p_hit : 1.0 - p_hit;
-    if (likelihood < kTiny) Flush();
-    const double weight = 1.0 / (p_hit * (1.0 - p_hit));
-    const double pull = is_hit ? weight * (1.0 - p_hit) : -weight * p_hit;
-    std::size_t k = 0;
-    for (std::size_t row = 0; row < 5; ++row) {
-      gradient[row] += pull * J[row];
-      for (std::size_t col = 0; col <= row; ++col) information[k++] += weight * J[row] * J[col];
-    }
-  }
-
-  void Flush() {
-    log_likelihood += std::log(likelihood);
-    likelihood = 1.0;
-  }
-
-  void AddTo(Climb* climb) {
-    Flush();
-    climb->fit.log_likelihood += log_likelihood;
-    std::size_t k = 0;
-    for (Eigen::Index row = 0; row < 5; ++row) {
-      climb->gradient[row] += gradient[static_cast<std::size_t>(row)];
-      for (Eigen::Index col = 0; col <= row; ++col, ++k) {
-        climb->fit.information(row, col) += information[k];
-        if (col != row) climb->fit.information(col, row) += information[k];
-      }
-    }
-  }
-};
-
-Climb Differentiate(const std::vector<OutlineBeam>& beams,
-                    const OutlineModel& model,
-                    const OutlineFit& at) {
-  const double keep = 1.0 - model.outlier_share;
-  const double log_far = std::log(model.outlier_share / 2);
-  const double log_sure = std::log(1.0 - model.outlier_share / 2);
-  const Eigen::Vector2d stretch = model.Stretch();
-  const Eigen::Vector2d per_blur = (model.blur_m * stretch).cwiseInverse();
-  // Sides: right, left, top, bottom. Distance inside, blur, and what thickness adds.
-  const Eigen::Vector4d side_lean = model.SideLean();
-  const Eigen::Vector4d half_m =
-      Eigen::Vector4d(model.width_m, model.width_m, model.height_m, model.height_m) / 2 +
-      at.spill_m * Eigen::Vector4d(stretch.x(), stretch.x(), stretch.y(), stretch.y()) +
-      at.thickness_m * side_lean;
-  const double cosine = std::cos(at.pose.angle_rad);
-  const double sine = std::sin(at.pose.angle_rad);
-  Climb climb;
-  climb.fit.num_beams = beams.size();
-  climb.fit.pose = at.pose;
-  climb.fit.spill_m = at.spill_m;
-  climb.fit.thickness_m = at.thickness_m;
-  Expect(at.spill_m, model.spill_m, model.spill_sigma_m, 3, &climb);
-  Expect(at.thickness_m, model.thickness_m, model.thickness_sigma_m, 4, &climb);
-  const OppositeSides across((half_m[0] + half_m[1]) * per_blur.x());
-  const OppositeSides upright((half_m[2] + half_m[3]) * per_blur.y());
-  BeamSums sums;
-  for (const OutlineBeam& beam : beams) {
-    const double dx = beam.position_m.x() - at.pose.centre_m.x();
-    const double dy = beam.position_m.y() - at.pose.centre_m.y();
-    const double x = cosine * dx + sine * dy;
-    const double y = cosine * dy - sine * dx;
-    const double right = (half_m[0] - x) * per_blur.x();
-    const double left = (half_m[1] + x) * per_blur.x();
-    const double top = (half_m[2] - y) * per_blur.y();
-    const double bottom = (half_m[3] + y) * per_blur.y();
-    const double least = std::min(std::min(right, left), std::min(top, bottom));
-    if (std::abs(least) > kFlat) {
-      sums.log_likelihood += (least > 0) == beam.is_hit ? log_sure : log_far;
-      continue;
-    }
-    double L_right, L_left, L_top, L_bottom;
-    across.Logistic(right, &L_right, &L_left);
-    upright.Logistic(top, &L_top, &L_bottom);
-    const double kept = keep * L_right * L_left * L_top * L_bottom;
-    // d p / d (distance inside each side), then: the centre and the angle move q by -(1, 0), -(0,
-    // 1) and (y, -x).
-    const double d_right = kept * (1.0 - L_right) * per_blur.x();
-    const double d_left = kept * (1.0 - L_left) * per_blur.x();
-    const double d_top = kept * (1.0 - L_top) * per_blur.y();
-    const double d_bottom = kept * (1.0 - L_bottom) * per_blur.y();
-    const double d_x = d_left - d_right;
-    const double d_y = d_bottom - d_top;
-    const double d_spill = (d_right + d_left) * stretch.x() + (d_top + d_bottom) * stretch.y();
-    const double d_thickness = d_right * side_lean[0] + d_left * side_lean[1] +
-                               d_top * side_lean[2] + d_bottom * side_lean[3];
-    sums.Add(model.outlier_share / 2 + kept,
-             beam.is_hit,
-             {-d_x, -d_y, d_x * y - d_y * x, d_spill, d_thickness});
-  }
-  sums.AddTo(&climb);
-  return climb;
-}
 
 OutlineFit Moved(const OutlineFit& from, const Vector5d& step) {
   OutlineFit to = from;
@@ -172,13 +31,13 @@ OutlineFit Refine(const std::vector<OutlineBeam>& beams,
   constexpr double kSmallStep = 1e-5;  // metres and radians: a hundredth of what matters
   constexpr double kMaxDamping = 1e3;
   double damping = 1e-3;
-  Climb best = Differentiate(beams, model, start);
+  OutlineSlope best = DifferentiateOutline(beams, model, start);
   for (int i = 0; i < max_iterations; ++i) {
     Matrix5d H = best.fit.information;
     H.diagonal() += damping * H.diagonal() + Vector5d::Constant(1e-6);
     const Vector5d step = H.ldlt().solve(best.gradient);
     if (!step.allFinite()) break;
-    const Climb next = Differentiate(beams, model, Moved(best.fit, step));
+    const OutlineSlope next = DifferentiateOutline(beams, model, Moved(best.fit, step));
     if (next.fit.log_likelihood > best.fit.log_likelihood) {
       best = next;
       damping = std::max(damping / 10, 1e-6);
@@ -267,25 +126,8 @@ OutlineModel WithBlur(OutlineModel model, double blur_m) {
 
 }  // namespace
 
-Eigen::Isometry2d RectanglePose::T_rectangle_plane() const {
-  Eigen::Isometry2d T_plane_rectangle = Eigen::Isometry2d::Identity();
-  T_plane_rectangle.linear() = Eigen::Rotation2Dd(angle_rad).toRotationMatrix();
-  T_plane_rectangle.translation() = centre_m;
-  return T_plane_rectangle.inverse();
-}
-
 double SearchBlurM(const OutlineModel& model) {
   return std::min(model.width_m, model.height_m) / 12;
-}
-
-Eigen::Matrix3d OutlineFit::PoseCovariance() const {
-  return information.inverse().topLeftCorner<3, 3>();
-}
-
-OutlineFit EvaluateOutline(const std::vector<OutlineBeam>& beams,
-                           const OutlineModel& model,
-                           const OutlineFit& at) {
-  return Differentiate(beams, model, at).fit;
 }
 
 OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,

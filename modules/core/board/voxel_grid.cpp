@@ -92,6 +92,7 @@ VoxelGrid::VoxelGrid(const std::vector<Eigen::Vector3d>& points_m, double voxel_
     columns_.back().end = places_.size();
   }
   LinkColumns(column_keys);
+  ListTouching();
 }
 
 void VoxelGrid::LinkColumns(const std::vector<std::uint64_t>& keys) {
@@ -107,6 +108,17 @@ void VoxelGrid::LinkColumns(const std::vector<std::uint64_t>& keys) {
         columns_[i].near[NearSlot(dx, static_cast<int>(dy_of(j)))] = static_cast<std::int32_t>(j);
       }
     }
+  }
+}
+
+void VoxelGrid::ListTouching() {
+  touching_.reserve(16 * NumCells());
+  touching_begin_.reserve(NumCells() + 1);
+  touching_begin_.push_back(0);
+  for (std::size_t at = 0; at < NumCells(); ++at) {
+    ForEachInColumns(
+        at, 1, [this](std::size_t i) { touching_.push_back(static_cast<std::uint32_t>(i)); });
+    touching_begin_.push_back(touching_.size());
   }
 }
 

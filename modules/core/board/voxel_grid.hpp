@@ -26,18 +26,8 @@ class VoxelGrid {
   /// Calls `visit(i)` for each cell within `reach` (at most 2) steps of cell `at`, itself included.
   template <typename Visit>
   void ForEachNear(std::size_t at, int reach, Visit visit) const {
-    const Place place = places_[at];
-    for (int dx = -reach; dx <= reach; ++dx) {
-      for (int dy = -reach; dy <= reach; ++dy) {
-        const std::int32_t near = columns_[place.column].near[NearSlot(dx, dy)];
-        if (near == kNoColumn) continue;
-        const Column& column = columns_[static_cast<std::size_t>(near)];
-        for (std::size_t i = column.begin; i < column.end; ++i) {
-          if (places_[i].z > place.z + reach) break;
-          if (places_[i].z >= place.z - reach) visit(i);
-        }
-      }
-    }
+    if (reach != 1) return ForEachInColumns(at, reach, visit);
+    for (std::size_t k = touching_begin_[at]; k < touching_begin_[at + 1]; ++k) visit(touching_[k]);
   }
 
  private:
@@ -58,13 +48,32 @@ class VoxelGrid {
     return static_cast<std::size_t>((dx + kReach) * (2 * kReach + 1) + dy + kReach);
   }
 
+  template <typename Visit>
+  void ForEachInColumns(std::size_t at, int reach, Visit visit) const {
+    const Place place = places_[at];
+    for (int dx = -reach; dx <= reach; ++dx) {
+      for (int dy = -reach; dy <= reach; ++dy) {
+        const std::int32_t near = columns_[place.column].near[NearSlot(dx, dy)];
+        if (near == kNoColumn) continue;
+        const Column& column = columns_[static_cast<std::size_t>(near)];
+        for (std::size_t i = column.begin; i < column.end; ++i) {
+          if (places_[i].z > place.z + reach) break;
+          if (places_[i].z >= place.z - reach) visit(i);
+        }
+      }
+    }
+  }
+
   void LinkColumns(const std::vector<std::uint64_t>& keys);
+  void ListTouching();
 
   // Of each cell, by what is used together.
   std::vector<Place> places_;
   std::vector<PointMoments> moments_;
   std::vector<Eigen::Vector3d> means_m_;
   std::vector<Column> columns_;
+  std::vector<std::uint32_t> touching_;      // within one step of each cell, cell by cell...
+  std::vector<std::size_t> touching_begin_;  // ...from here on; they are asked for often
 };
 
 }  // namespace voqcal

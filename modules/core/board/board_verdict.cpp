@@ -48,13 +48,9 @@ std::array<bool, 4> CoveredPast(const std::array<OutlineEdge, 4>& edges,
   constexpr int kFewMisses = 4;  // for each of so many hits
   const Eigen::Isometry3d T_lidar_board = TransformOf(m.frame, m.outline.pose);
   const Eigen::Vector2d half_m(m.model.width_m / 2, m.model.height_m / 2);
-  int num_hits = 0;
-  int num_misses = 0;
-  for (const OutlineEdge& edge : edges) {
-    num_hits += edge.num_hits;
-    num_misses += edge.num_misses;
-  }
-  const bool is_cropped = kFewMisses * num_misses < num_hits;
+  const bool is_cropped = std::all_of(edges.begin(), edges.end(), [](const OutlineEdge& edge) {
+    return kFewMisses * edge.num_misses < edge.num_hits;
+  });
   std::array<bool, 4> is_covered{};
   for (std::size_t i = 0; i < 4; ++i) {
     const Eigen::Vector2d outward = OutwardOf(i);

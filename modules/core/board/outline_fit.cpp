@@ -135,7 +135,8 @@ OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
                          const Eigen::Vector2d& centre_m) {
   constexpr std::size_t kNumTried = 3;  // the centre is only about right, so the score may err
   constexpr int kNumFirstSteps = 2;
-  constexpr int kNumSteps = 8;
+  constexpr int kNumSteps = 4;
+  constexpr double kHopeless = 0.6;  // nats of a beam; boards have 0.4 by then, as a rule 0.1
   constexpr std::size_t kNumBeams = 250;
   const std::vector<OutlineBeam> few = Thinned(beams, kNumBeams);
   const OutlineModel wide = WithBlur(model, std::max(model.blur_m, SearchBlurM(model)));
@@ -146,6 +147,7 @@ OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
         Refine(few, wide, StartAt(model, {centre_m, angles_rad[i]}), kNumFirstSteps);
     if (i == 0 || fit.log_likelihood > best.log_likelihood) best = fit;
   }
+  if (best.Unexplained() > kHopeless) return best;
   return Refine(few, wide, best, kNumSteps);
 }
 

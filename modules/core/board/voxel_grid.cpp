@@ -115,10 +115,33 @@ void VoxelGrid::ListTouching() {
   touching_.reserve(16 * NumCells());
   touching_begin_.reserve(NumCells() + 1);
   touching_begin_.push_back(0);
-  for (std::size_t at = 0; at < NumCells(); ++at) {
-    ForEachInColumns(
-        at, 1, [this](std::size_t i) { touching_.push_back(static_cast<std::uint32_t>(i)); });
-    touching_begin_.push_back(touching_.size());
+  for (const Column& column : columns_) {
+    // Upwards in the column, the first cell that touches moves up too, in each column around.
+    struct Run {
+      std::size_t first;
+      std::size_t end;
+    };
+    std::array<Run, 9> runs;
+    std::size_t num_runs = 0;
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        const std::int32_t near = column.near[NearSlot(dx, dy)];
+        if (near == kNoColumn) continue;
+        const Column& beside = columns_[static_cast<std::size_t>(near)];
+        runs[num_runs++] = {beside.begin, beside.end};
+      }
+    }
+    for (std::size_t at = column.begin; at < column.end; ++at) {
+      const std::int32_t z = places_[at].z;
+      for (std::size_t k = 0; k < num_runs; ++k) {
+        Run& run = runs[k];
+        while (run.first < run.end && places_[run.first].z < z - 1) ++run.first;
+        for (std::size_t i = run.first; i < run.end && places_[i].z <= z + 1; ++i) {
+          touching_.push_back(static_cast<std::uint32_t>(i));
+        }
+      }
+      touching_begin_.push_back(touching_.size());
+    }
   }
 }
 

@@ -56,10 +56,9 @@ class VoxelGrid {
         const std::int32_t near = columns_[place.column].near[NearSlot(dx, dy)];
         if (near == kNoColumn) continue;
         const Column& column = columns_[static_cast<std::size_t>(near)];
-        for (std::size_t i = column.begin; i < column.end; ++i) {
-          if (places_[i].z > place.z + reach) break;
-          if (places_[i].z >= place.z - reach) visit(i);
-        }
+        std::size_t i = column.begin;
+        while (i < column.end && places_[i].z < place.z - reach) ++i;
+        for (; i < column.end && places_[i].z <= place.z + reach; ++i) visit(i);
       }
     }
   }

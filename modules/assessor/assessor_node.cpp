@@ -126,7 +126,9 @@ CalibrationResult AssessorNode::Result() {
                                   result.T_camera_lidar,
                                   result.averaged.T_camera_lidar,
                                   rig_.scene_check);
-  result.diagnosis = Diagnose(samples,
+  // What the result has taken out of the lidar's ranges is no longer wrong.
+  const std::vector<BoardSample> corrected = CorrectedSamples(samples, result.lidar_bias);
+  result.diagnosis = Diagnose(SamplesWithout(corrected, {}),
                               averaged_->num_inconsistent,
                               rig_.board,
                               rig_.camera,

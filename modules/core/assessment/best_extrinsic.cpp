@@ -140,14 +140,22 @@ BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias) {
   return corrected;
 }
 
+std::vector<BoardSample> CorrectedSamples(const std::vector<const BoardSample*>& samples,
+                                          const LidarBias& bias) {
+  std::vector<BoardSample> corrected;
+  for (const BoardSample* sample : samples) {
+    corrected.push_back(bias.IsObservable() ? CorrectedSample(*sample, bias) : *sample);
+  }
+  return corrected;
+}
+
 SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
                           const CameraModel& camera,
                           const Eigen::Isometry3d& T_camera_lidar,
                           const LidarBias& bias) {
-  if (!bias.IsObservable()) return ScoreScene(samples, camera, T_camera_lidar);
   std::vector<PoseScore> poses;
-  for (const BoardSample* sample : samples) {
-    poses.push_back(ScorePose(CorrectedSample(*sample, bias), camera, T_camera_lidar));
+  for (const BoardSample& sample : CorrectedSamples(samples, bias)) {
+    poses.push_back(ScorePose(sample, camera, T_camera_lidar));
   }
   return SummariseScores(std::move(poses));
 }

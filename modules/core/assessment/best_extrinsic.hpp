@@ -74,7 +74,11 @@ struct BestExtrinsic {
 /// out.
 BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias);
 
-/// ScoreScene of the samples without `bias`; as they are if it has no fault that is observable.
+/// Each sample so; as it is if `bias` has no fault that is observable.
+std::vector<BoardSample> CorrectedSamples(const std::vector<const BoardSample*>& samples,
+                                          const LidarBias& bias);
+
+/// ScoreScene of the CorrectedSamples.
 SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
                           const CameraModel& camera,
                           const Eigen::Isometry3d& T_camera_lidar,

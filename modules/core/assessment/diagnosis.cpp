@@ -41,7 +41,7 @@ void SetOutliersAside(std::vector<FaultEquation>* equations,
     finding.log_likelihood_gain = 0.5 * std::pow(1.54 * *worst / median_m, 2);
     finding.text = Format(
         "sample %lld is %.0f mm off where half of the others are within %.0f mm: "
-        "the board moved, or was taken for something else",
+        "the board moved, or something else was taken for it: discard the sample",
         static_cast<long long>(at->sample_id),
         finding.value,
         1e3 * median_m);
@@ -56,8 +56,8 @@ void JudgeInconsistent(int num_inconsistent, std::size_t num_used, Diagnosis* di
   finding.cause = "moving sample";
   finding.value = num_inconsistent;
   finding.text = Format(
-      "%d of %zu samples contradict the others and were left out: the board "
-      "moved, or was taken for something else",
+      "%d of %zu samples contradict the others: the board moved, or something else was taken for "
+      "it; they were left out, nothing is to be done",
       num_inconsistent,
       num_used + static_cast<std::size_t>(num_inconsistent));
   diagnosis->findings.push_back(finding);
@@ -147,7 +147,8 @@ void JudgeOutline(const std::vector<const BoardSample*>& samples,
   finding.explained = mean_m * mean_m / (mean_m * mean_m + variance_m2);
   finding.text = Format(
       "the board's edges are given %.0f +- %.0f mm %s than the lidar measures "
-      "them: explains %.0f %% of the squared edge errors",
+      "them: explains %.0f %% of the squared edge errors; measure the board and give it as "
+      "board.width_m and height_m",
       1e3 * std::abs(mean_m),
       1e3 * error_m,
       mean_m > 0 ? "longer" : "shorter",

@@ -47,6 +47,20 @@ double LengthError(const FaultFit& fit, const std::vector<FaultParameter>& fault
   return std::sqrt(sum);
 }
 
+// "calibrate the camera ...": what the user can do about it, with the rig file's keys.
+std::string Remedy(FaultParameter fault) {
+  switch (fault) {
+    case kFocalScale:
+      return "check camera.fx_px and fy_px in the rig file, or calibrate the camera again";
+    case kPrincipalX:
+      return "check camera.cx_px and cy_px in the rig file, or calibrate the camera again";
+    case kSquareScale:
+      return "measure the squares and give them as board.square_m";
+    default:
+      return "take samples at more distances, which the refinement needs to take it out";
+  }
+}
+
 // "the focal length given is 2.0 +- 0.1 % too long": what is wrong with what was given.
 std::string Claim(const Suspect& suspect, const FaultFit& fit) {
   const double value = suspect.scale * fit.value[kNumExtrinsicParameters + suspect.faults[0]];
@@ -101,7 +115,8 @@ Finding MakeFinding(const Candidate& candidate, const FaultFit& before) {
                      "falls from %.1f to %.1f mm",
                      100 * finding.explained,
                      finding.held_out_before_mm,
-                     finding.held_out_after_mm);
+                     finding.held_out_after_mm) +
+                 "; " + Remedy(faults[0]);
   return finding;
 }
 

@@ -43,75 +43,98 @@ std::string Sentence(std::string text) {
   return text.back() == '.' ? text : text + ".";
 }
 
+/// `advice` is for who has to do something: not where all is good.
+void Add(const std::string& name,
+         Grade grade,
+         const std::string& fact,
+         const std::string& advice,
+         std::vector<VerdictCheck>* checks) {
+  checks->push_back({name, grade, grade == Grade::kGood ? fact : fact + " " + advice});
+}
+
 void AddFit(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   const double ratio = evidence.held_out_mm / evidence.in_sample_mm;
-  checks->push_back({"Poses it never saw",
-                     GradeOf(evidence.held_out_mm, kHeldOutMm),
-                     "The board's centre lands " + Number(evidence.held_out_mm, 1, "mm") +
-                         " (mean) from where the camera sees it, on poses left out of the fit."});
-  checks->push_back(
-      {"No overfitting",
-       GradeOf(ratio, kOverfitRatio),
-       "That is " + Number(ratio, 2, "times") + " the error on the poses that made the result."});
-  checks->push_back({"Board directions",
-                     GradeOf(evidence.normal_deg, kNormalDeg),
-                     "Lidar and camera disagree by " + Number(evidence.normal_deg, 2, "degrees") +
-                         " (mean) on where the board faces. Above a degree the lidar's ranges are "
-                         "usually biased; the centres do not show it."});
+  Add("Poses it never saw",
+      GradeOf(evidence.held_out_mm, kHeldOutMm),
+      "The board's centre lands " + Number(evidence.held_out_mm, 1, "mm") +
+          " (mean) from where the camera sees it, on poses left out of the fit.",
+      "If a few poses stand out, discard them; if most are off, check the board and the camera in "
+      "the rig file.",
+      checks);
+  Add("Poses it was made from",
+      GradeOf(ratio, kOverfitRatio),
+      "That is " + Number(ratio, 2, "times") + " the error on the poses that made the result.",
+      "The result fits these too well: take more samples.",
+      checks);
+  Add("Board directions",
+      GradeOf(evidence.normal_deg, kNormalDeg),
+      "Lidar and camera disagree by " + Number(evidence.normal_deg, 2, "degrees") +
+          " (mean) on where the board faces.",
+      "The lidar's ranges are probably biased, which the centres do not show: take more samples, "
+      "tilted to all sides.",
+      checks);
 }
 
 void AddCertainty(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
-  checks->push_back(
-      {"Rotation is certain",
-       GradeOf(evidence.sigma_deg, kSigmaDeg),
-       "Largest standard deviation " + Number(evidence.sigma_deg, 3, "degrees") + "."});
-  checks->push_back({"Translation is certain",
-                     GradeOf(evidence.sigma_mm, kSigmaMm),
-                     "Largest standard deviation " + Number(evidence.sigma_mm, 1, "mm") + "."});
+  Add("Certainty of the rotation",
+      GradeOf(evidence.sigma_deg, kSigmaDeg),
+      "Largest standard deviation " + Number(evidence.sigma_deg, 3, "degrees") + ".",
+      "Take more samples, far to the left and right and high and low.",
+      checks);
+  Add("Certainty of the translation",
+      GradeOf(evidence.sigma_mm, kSigmaMm),
+      "Largest standard deviation " + Number(evidence.sigma_mm, 1, "mm") + ".",
+      "Take more samples, near ones too, tilted to all sides.",
+      checks);
 }
 
 void AddPoses(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   const int num_left_out = evidence.num_samples - evidence.num_used;
-  checks->push_back(
-      {"Enough poses",
-       GradeOf(evidence.num_used, kNumPoses),
-       std::to_string(evidence.num_used) + " poses were used; 20 to 40 are recommended."});
-  checks->push_back({"Poses all over the image",
-                     GradeOf(evidence.num_cells, kNumCells),
-                     std::to_string(evidence.num_cells) +
-                         " of the 9 parts of the image have a pose. Where there is none, the "
-                         "result is extrapolated."});
-  checks->push_back({"Few samples rejected",
-                     GradeOf(static_cast<double>(num_left_out) / std::max(evidence.num_samples, 1),
-                             kLeftOutShare),
-                     std::to_string(num_left_out) + " of " + std::to_string(evidence.num_samples) +
-                         " samples disagreed with the others and were left out."});
+  Add("Number of poses",
+      GradeOf(evidence.num_used, kNumPoses),
+      std::to_string(evidence.num_used) + " poses were used.",
+      "Take more: 20 to 40 are recommended.",
+      checks);
+  Add("Parts of the image",
+      GradeOf(evidence.num_cells, kNumCells),
+      std::to_string(evidence.num_cells) + " of the 9 parts of the image have a pose.",
+      "Show the board in the others: the result is extrapolated there.",
+      checks);
+  Add("Samples left out",
+      GradeOf(static_cast<double>(num_left_out) / std::max(evidence.num_samples, 1), kLeftOutShare),
+      std::to_string(num_left_out) + " of " + std::to_string(evidence.num_samples) +
+          " samples disagreed with the others and were left out.",
+      "Hold the board still, away from people and things of its size.",
+      checks);
 }
 
 /// The scene's own word, where it has one, and the likeliest cause of what is wrong.
 void AddScene(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   if (evidence.scene != SceneVerdict::kNotJudged) {
-    checks->push_back({"The whole scene",
-                       evidence.scene == SceneVerdict::kAgrees ? Grade::kGood : Grade::kBad,
-                       Sentence(evidence.scene_reason)});
+    Add("The whole scene",
+        evidence.scene == SceneVerdict::kAgrees ? Grade::kGood : Grade::kBad,
+        Sentence(evidence.scene_reason),
+        "The scene contradicts the board: check the board and the camera in the rig file, and that "
+        "neither sensor was moved.",
+        checks);
   }
   const std::string& fault = evidence.likeliest_fault;
-  checks->push_back({"Nothing suspicious",
-                     fault.empty() ? Grade::kGood : Grade::kLook,
-                     fault.empty() ? "Nothing was found that would explain the errors better."
-                                   : Sentence(fault)});
+  checks->push_back(
+      {"Signs of a fault",
+       fault.empty() ? Grade::kGood : Grade::kLook,
+       fault.empty() ? "None was found that would explain the errors better." : Sentence(fault)});
 }
 
 std::string Headline(Grade grade) {
   switch (grade) {
     case Grade::kGood:
-      return "Good: use it.";
+      return "Good: use it. Nothing is to be done.";
     case Grade::kLook:
-      return "Usable, but look at what is marked below.";
+      return "Usable; what is marked below would make it better.";
     case Grade::kBad:
       break;
   }
-  return "Do not use it yet: see what is marked below.";
+  return "Do not use it yet: mend what is marked below.";
 }
 
 }  // namespace

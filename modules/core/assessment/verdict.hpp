@@ -29,9 +29,9 @@ std::string ToString(Grade grade);  ///< "good", "look", "bad".
 
 /// One thing that was looked at, and what it means.
 struct VerdictCheck {
-  std::string name;  ///< "Rotation is certain"
+  std::string name;  ///< "Certainty of the rotation"
   Grade grade = Grade::kLook;
-  std::string text;  ///< A sentence with the number.
+  std::string text;  ///< The number, and what to do unless it is good.
 };
 
 /// Is the result good? In words for somebody who has never calibrated anything.

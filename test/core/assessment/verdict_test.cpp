@@ -75,6 +75,18 @@ TEST(Judge, DoesNotCallTheUnknownGood) {
   }
 }
 
+TEST(Judge, SaysWhatToDoUnlessItIsGood) {
+  const auto text_of = [](const Verdict& verdict, const std::string& name) {
+    for (const VerdictCheck& check : verdict.checks) {
+      if (check.name == name) return check.text;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(text_of(Judge(GoodEvidence()), "Number of poses"), "30 poses were used.");
+  EXPECT_EQ(text_of(JudgeWith([](Evidence* e) { e->num_used = 10; }), "Number of poses"),
+            "10 poses were used. Take more: 20 to 40 are recommended.");
+}
+
 TEST(Judge, LeavesOutASceneThatSaysNothing) {
   const std::size_t num = Judge(GoodEvidence()).checks.size();
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = SceneVerdict::kNotJudged; }).checks.size(),

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 
+std::string Tenths(double value) { return std::isnan(value) ? "-" : Format("%.1f", value); }
+
 std::string TransformLines(const CalibrationResult& result) {
   const Eigen::Vector3d& t = result.T_camera_lidar.translation();
   Eigen::Quaterniond q(result.T_camera_lidar.linear());
@@ -83,7 +85,8 @@ std::string SceneLines(const CalibrationResult& result) {
   }
   text += "predicted, 1 sigma, middle of the image (worst corner)\n ";
   for (const PredictedError& error : result.predicted) {
-    text += Format(" %.0f m: %.1f px (%.1f);", error.range_m, error.centre_px, error.corner_px);
+    text += Format(" %.0f m: ", error.range_m) + Tenths(error.centre_px) + " px (" +
+            Tenths(error.corner_px) + ");";
   }
   text.back() = '\n';
   const SceneCheck& check = result.scene_check;
@@ -99,7 +102,7 @@ std::string SceneLines(const CalibrationResult& result) {
 
 std::string DiagnosisLines(const Diagnosis& diagnosis) {
   std::string text = "what is likely wrong\n";
-  if (diagnosis.findings.empty()) text += "  nothing was found\n";
+  if (diagnosis.findings.empty()) text += "  nothing: nothing is to be done\n";
   for (const Finding& finding : diagnosis.findings) {
     text += "  " + finding.cause + ": " + finding.text + "\n";
   }

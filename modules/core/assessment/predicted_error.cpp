@@ -1,6 +1,5 @@
 #include "core/assessment/predicted_error.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -56,14 +55,15 @@ std::vector<PredictedError> PredictErrors(const Eigen::Isometry3d& T_camera_lida
     };
     PredictedError error;
     error.range_m = range_m;
-    const PointError centre = at(right_px / 2, bottom_px / 2).value_or(PointError{});
-    error.centre_px = centre.px;
-    error.centre_mm = centre.mm;
+    if (const auto centre = at(right_px / 2, bottom_px / 2)) {
+      error.centre_px = centre->px;
+      error.centre_mm = centre->mm;
+    }
     for (const auto& corner :
          {at(0, 0), at(right_px, 0), at(0, bottom_px), at(right_px, bottom_px)}) {
       if (!corner) continue;  // beyond what the lens model can say
-      error.corner_px = std::max(error.corner_px, corner->px);
-      error.corner_mm = std::max(error.corner_mm, corner->mm);
+      error.corner_px = std::fmax(error.corner_px, corner->px);  // the number, not the NaN
+      error.corner_mm = std::fmax(error.corner_mm, corner->mm);
     }
     errors.push_back(error);
   }

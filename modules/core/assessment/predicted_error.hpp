@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -10,13 +11,14 @@
 namespace voqcal {
 
 /// How far a lidar point is expected to land from where the camera sees it, by the extrinsic's
-/// covariance alone: root mean square, across the camera's ray.
+/// covariance alone: root mean square, across the camera's ray. NaN where the lens model ends before
+/// the point.
 struct PredictedError {
-  double range_m = 0;    ///< Of the point from the camera.
-  double centre_px = 0;  ///< In the middle of the image...
-  double centre_mm = 0;
-  double corner_px = 0;  ///< ...and in the worst of its corners.
-  double corner_mm = 0;
+  double range_m = 0;  ///< Of the point from the camera.
+  double centre_px = std::numeric_limits<double>::quiet_NaN();  ///< In the middle of the image...
+  double centre_mm = std::numeric_limits<double>::quiet_NaN();
+  double corner_px = std::numeric_limits<double>::quiet_NaN();  ///< ...and in its worst corner.
+  double corner_mm = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Quadratic forms of the error at one point: trace(form * covariance) is its mean square.

@@ -63,13 +63,14 @@ TEST(PredictErrors, AgreesWithSampling) {
   EXPECT_NEAR(at_10_m.centre_px, rms_px, 0.015 * rms_px);
 }
 
-TEST(PredictErrors, ACornerThatTheLensCannotSayIsLeftOut) {
+TEST(PredictErrors, CornersThatTheLensCannotSayAreUnknown) {
   CameraModel camera = test::SmallCamera(LensModel::kPlumbBob);
   camera.distortion = {-0.6, 0, 0, 0, 0};  // folds back within the image
   const PredictedError error =
       PredictErrors(test::TestExtrinsic(), 1e-6 * Matrix6d::Identity(), camera)[0];
   EXPECT_GT(error.centre_px, 0);
-  EXPECT_TRUE(std::isfinite(error.corner_px));
+  EXPECT_TRUE(std::isnan(error.corner_px));
+  EXPECT_TRUE(std::isnan(error.corner_mm));
 }
 
 }  // namespace

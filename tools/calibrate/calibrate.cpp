@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 #include <system_error>
 
+#include "calibrate/advice.hpp"
 #include "calibrate/collect.hpp"
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
@@ -53,8 +54,9 @@ void Calibrate(const CalibrateArgs& args) {
   const auto run = CollectSamples(rig, args.input, scratch.path());
   run->Finish(/*is_collecting_only=*/false);
   if (!run->assessor().result()) {
-    throw std::runtime_error(args.input.Given().string() + ": no calibration: " +
-                             run->assessor().problem() + " (" + CountsOf(*run) + ")");
+    throw std::runtime_error(args.input.Given().string() +
+                             ": no calibration: " + run->assessor().problem() + " (" +
+                             CountsOf(*run) + ")" + FailureAdvice(*run));
   }
   const std::string report_problem = WriteReport(rig, *run, scratch.path());
   Deliver(scratch.path(), args.out);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "calibrate/advice.hpp"
 #include "calibrate/collect.hpp"
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
@@ -46,7 +47,7 @@ void Evaluate(const EvaluateArgs& args) {
   run->Finish(/*is_collecting_only=*/true);
   if (run->samples().empty()) {
     throw std::runtime_error(args.input.Given().string() + ": no sample to score (" +
-                             CountsOf(*run) + ")");
+                             CountsOf(*run) + ")" + FailureAdvice(*run));
   }
   const Consistency consistency = FindConsistent(run->samples(), rig.consistency);
   const std::vector<BoardSample> consistent = ConsistentSamples(run->samples(), consistency);

@@ -8,6 +8,13 @@ import { join } from "node:path";
 const require = createRequire(new URL("../../tools/node/package.json", import.meta.url));
 const { chromium } = require("playwright-core");
 
+/** What is wrong, a line each. */
+export const problems = [];
+export const demand = (isMet, problem) => {
+  if (!isMet) problems.push(problem);
+};
+export const say = (text) => process.stdout.write(`${text}\n`);
+
 export const SIZES = { desktop: { width: 1280, height: 900 }, phone: { width: 390, height: 844 } };
 
 function chromiumPath() {

@@ -6,15 +6,9 @@ import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { SIZES, openBrowser, until as untilInPage } from "./browser.mjs";
+import { SIZES, demand, openBrowser, problems, say, until as untilInPage } from "./browser.mjs";
 
 const [session, folder] = process.argv.slice(2);
-const problems = [];
-const demand = (isMet, problem) => {
-  if (!isMet) problems.push(problem);
-};
-const say = (text) => process.stdout.write(`${text}\n`);
-
 const { context, close } = await openBrowser();
 const page = await context.newPage();
 page.on("console", (message) => message.type() === "error" && problems.push(`console: ${message.text()}`));

@@ -1,6 +1,5 @@
 // Speed of the lidar board detector on whole sweeps, simulated and real.
 
-#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include "core/board/lidar_board.hpp"
+#include "core/median.hpp"
 #include "simulated_scene.hpp"
 #include "support/real_data.hpp"
 #include "support/real_sweeps.hpp"
@@ -46,9 +46,7 @@ void DetectLidarBoardOver(benchmark::State& state,
   }
   std::size_t num_points = 0;
   for (const PointCloud& cloud : clouds) num_points += cloud.points.size();
-  const auto middle = times_ms.begin() + static_cast<std::ptrdiff_t>(times_ms.size() / 2);
-  std::nth_element(times_ms.begin(), middle, times_ms.end());
-  state.counters["median_ms"] = *middle;
+  state.counters["median_ms"] = Median(times_ms);
   state.counters["points"] = static_cast<double>(num_points) / static_cast<double>(clouds.size());
   state.counters["found"] = static_cast<double>(num_found) / static_cast<double>(times_ms.size());
 }

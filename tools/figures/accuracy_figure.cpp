@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/estimation/likelihood.hpp"
+#include "core/median.hpp"
 #include "figures/figures.hpp"
 #include "figures/simulated_session.hpp"
 
@@ -51,11 +52,6 @@ std::vector<Run> RunAll(const AccuracyArgs& args) {
     runs.push_back({DifferenceLeft(T_truth, refined.T_camera_lidar), refined.uncertainty});
   }
   return runs;
-}
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? std::nan("") : values[values.size() / 2];
 }
 
 void PrintAccuracy(const AccuracyArgs& args) {

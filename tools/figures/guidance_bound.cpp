@@ -10,6 +10,7 @@
 
 #include "core/guidance/best_design.hpp"
 #include "core/guidance/extrinsic_information.hpp"
+#include "core/median.hpp"
 #include "figures/figures.hpp"
 #include "figures/simulated_session.hpp"
 #include "support/guided_session.hpp"
@@ -148,8 +149,7 @@ class Bound {
       for (int i = 0; i < num_poses; ++i) information += holds[random_.Index(holds.size())];
       errors.push_back(Worst(information));
     }
-    std::sort(errors.begin(), errors.end());
-    return errors[errors.size() / 2];
+    return Median(std::move(errors));
   }
 
   const BoundArgs& args_;

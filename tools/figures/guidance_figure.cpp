@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/median.hpp"
 #include "figures/figures.hpp"
 #include "figures/simulated_session.hpp"
 #include "support/guided_session.hpp"
@@ -21,11 +22,6 @@ struct GuidanceArgs {
   int num_poses = 25;
   std::uint32_t seed = 1;
 };
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? std::nan("") : values[values.size() / 2];
-}
 
 using Sessions = std::vector<std::vector<test::GuidedStep>>;
 

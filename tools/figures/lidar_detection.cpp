@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/median.hpp"
 #include "figures/figures.hpp"
 
 namespace voqcal {
@@ -60,13 +61,6 @@ double Mean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
   return sum / static_cast<double>(values.size());  // NaN without values
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 double Percent(int part, int whole) { return 100.0 * part / whole; }

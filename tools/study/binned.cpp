@@ -1,6 +1,7 @@
 #include "study/binned.hpp"
 
 #include "core/geometry/rigid.hpp"
+#include "core/median.hpp"
 #include "study/statistics.hpp"
 
 namespace voqcal {

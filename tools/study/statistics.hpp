@@ -13,7 +13,6 @@ double SpearmanCorrelation(const std::vector<double>& x, const std::vector<doubl
 std::vector<std::vector<int>> EqualCountBins(const std::vector<double>& values, int num_bins);
 
 double Mean(const std::vector<double>& values);               ///< NaN if empty.
-double Median(std::vector<double> values);                    ///< NaN if empty.
 double Largest(const std::vector<double>& values);            ///< NaN if empty or one of them is.
 double StandardDeviation(const std::vector<double>& values);  ///< Sample's (n - 1); NaN below two.
 

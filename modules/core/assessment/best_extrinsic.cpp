@@ -26,16 +26,11 @@ SceneScore LikelihoodHeldOut(const std::vector<const BoardSample*>& samples,
                              const CameraModel& camera,
                              const LikelihoodExtrinsic& all,
                              const LikelihoodOptions& options) {
-  std::vector<PoseScore> poses(samples.size());
-  for (std::size_t left_out = 0; left_out < samples.size(); ++left_out) {
-    std::vector<const BoardSample*> others = samples;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+  return ScoreHeldOut(samples, [&](const BoardSample& held_out, const auto& others) -> PoseScore {
     const LikelihoodExtrinsic refined = RefineNearby(others, all, options);
-    if (!refined.IsUsable()) continue;
-    const BoardSample corrected = CorrectedSample(*samples[left_out], refined.bias);
-    poses[left_out] = ScorePose(corrected, camera, refined.T_camera_lidar);
-  }
-  return SummariseScores(std::move(poses));
+    if (!refined.IsUsable()) return {};
+    return ScorePose(CorrectedSample(held_out, refined.bias), camera, refined.T_camera_lidar);
+  });
 }
 
 MethodTrial TryAverage(const std::vector<const BoardSample*>& samples,
@@ -118,10 +113,6 @@ std::vector<std::string> RefinerOptions::Problems() const {
   problems.Add(reprojection.Problems());
   problems.Add(likelihood.Problems());
   return problems.lines();
-}
-
-double MethodTrial::ErrorMm() const {
-  return std::sqrt(held_out.centre_mm.mean * held_out.corner_mm.mean);
 }
 
 LidarBias BestExtrinsic::Bias() const {

@@ -46,9 +46,7 @@ struct MethodTrial {
   /// made it, which flatters it.
   SceneScore held_out;
 
-  /// The geometric mean of the centres' error in the image and the corners' in space, mm: the one
-  /// sees what the camera is asked, the other also what it hardly sees. NaN without scores.
-  double ErrorMm() const;
+  double ErrorMm() const { return CombinedErrorMm(held_out); }
 };
 
 /// The extrinsic to publish, and why.

@@ -7,6 +7,7 @@
 #include "core/assessment/nested_models.hpp"
 #include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/median.hpp"
 #include "core/problems.hpp"
 
 namespace voqcal {
@@ -14,11 +15,6 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kLeastForModels = 5;  // of 6 residuals each, for 6 + 2 parameters
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 // Takes the samples that stand out from the equations, the worst first: each one pulls the fit.
 void SetOutliersAside(std::vector<FaultEquation>* equations,

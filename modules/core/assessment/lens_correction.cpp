@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <utility>
 
 #include "core/camera/lens_errors.hpp"
 #include "core/estimation/lens_terms.hpp"
@@ -16,28 +14,19 @@ SceneScore HeldOut(const std::vector<const BoardSample*>& samples,
                    const CameraModel& camera,
                    const LikelihoodExtrinsic& all,
                    const LikelihoodOptions& options) {
-  std::vector<PoseScore> poses(samples.size());
-  for (std::size_t left_out = 0; left_out < samples.size(); ++left_out) {
-    std::vector<const BoardSample*> others = samples;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+  return ScoreHeldOut(samples, [&](const BoardSample& held_out, const auto& others) -> PoseScore {
     const LikelihoodExtrinsic refined = RefineWithLensNearby(others, board, camera, all, options);
-    if (!refined.IsUsable()) continue;
-    const BoardSample& sample = *samples[left_out];
-    BoardSample corrected = CorrectedSample(sample, refined.bias);
-    corrected.camera.pose = CorrectedCameraPose(sample, board, camera, refined.lens.errors);
-    poses[left_out] =
-        ScorePose(corrected, CorrectedCamera(camera, refined.lens.errors), refined.T_camera_lidar);
-  }
-  return SummariseScores(std::move(poses));
+    if (!refined.IsUsable()) return {};
+    BoardSample corrected = CorrectedSample(held_out, refined.bias);
+    corrected.camera.pose = CorrectedCameraPose(held_out, board, camera, refined.lens.errors);
+    return ScorePose(
+        corrected, CorrectedCamera(camera, refined.lens.errors), refined.T_camera_lidar);
+  });
 }
 
 // Share by which the held-out error must fall: less is no reason to touch intrinsics, and chance
 // gives some.
 constexpr double kMinGain = 0.1;
-
-double ErrorMm(const SceneScore& held_out) {
-  return MethodTrial{RefineMethod::kLikelihood, "", held_out}.ErrorMm();
-}
 
 bool HavePointsAndPixels(const std::vector<const BoardSample*>& samples) {
   return std::all_of(samples.begin(), samples.end(), [](const BoardSample* sample) {
@@ -74,8 +63,8 @@ LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
   correction.T_camera_lidar = refined.T_camera_lidar;
   correction.covariance = refined.uncertainty.covariance;
   correction.held_out = HeldOut(samples, board, camera, refined, options);
-  const double with_mm = ErrorMm(correction.held_out);
-  const double without_mm = ErrorMm(held_out_without);
+  const double with_mm = CombinedErrorMm(correction.held_out);
+  const double without_mm = CombinedErrorMm(held_out_without);
   correction.problem.clear();
   if (!std::isfinite(with_mm) || !std::isfinite(without_mm)) {
     correction.problem = "not every pose could be held out";

@@ -78,19 +78,30 @@ SceneScore ScoreScene(const std::vector<const BoardSample*>& samples,
   return SummariseScores(std::move(poses));
 }
 
+double CombinedErrorMm(const SceneScore& scene) {
+  return std::sqrt(scene.centre_mm.mean * scene.corner_mm.mean);
+}
+
+SceneScore ScoreHeldOut(const std::vector<const BoardSample*>& samples,
+                        const ScoreByOthers& score) {
+  std::vector<PoseScore> poses;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    std::vector<const BoardSample*> others = samples;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    poses.push_back(score(*samples[i], others));
+  }
+  return SummariseScores(std::move(poses));
+}
+
 SceneScore LeaveOneOutScore(const std::vector<const BoardSample*>& samples,
                             const CameraModel& camera,
                             const Eigen::Isometry3d& T_camera_lidar_start,
                             const RefineOptions& options) {
-  std::vector<PoseScore> poses(samples.size());
-  for (std::size_t left_out = 0; left_out < samples.size(); ++left_out) {
-    std::vector<const BoardSample*> others = samples;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+  return ScoreHeldOut(samples, [&](const BoardSample& held_out, const auto& others) -> PoseScore {
     const RefinedExtrinsic refined = RefineExtrinsic(others, camera, T_camera_lidar_start, options);
-    if (!refined.IsUsable()) continue;
-    poses[left_out] = ScorePose(*samples[left_out], camera, refined.T_camera_lidar);
-  }
-  return SummariseScores(std::move(poses));
+    if (!refined.IsUsable()) return {};
+    return ScorePose(held_out, camera, refined.T_camera_lidar);
+  });
 }
 
 }  // namespace voqcal

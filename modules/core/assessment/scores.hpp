@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -49,6 +50,17 @@ PoseScore ScorePose(const BoardSample& sample,
 SceneScore ScoreScene(const std::vector<const BoardSample*>& samples,
                       const CameraModel& camera,
                       const Eigen::Isometry3d& T_camera_lidar);
+
+/// The geometric mean of the centres' error in the image and the corners' in space, mm: the one
+/// sees what the camera is asked, the other also what it hardly sees. NaN without scores.
+double CombinedErrorMm(const SceneScore& scene);
+
+/// A sample that was held out, scored by what the others give; all NaN if they give nothing.
+using ScoreByOthers = std::function<PoseScore(const BoardSample& held_out,
+                                              const std::vector<const BoardSample*>& others)>;
+
+/// Each sample held out in turn.
+SceneScore ScoreHeldOut(const std::vector<const BoardSample*>& samples, const ScoreByOthers& score);
 
 /// Each pose scored by the extrinsic refined without it, from the same start: what is held out is
 /// the refinement. The start (the average over all poses) only says which minimum and which

@@ -6,15 +6,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/median.hpp"
+
 namespace voqcal {
 namespace {
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The image at any point, interpolated; nothing outside of it.
 std::optional<double> GreyAt(const cv::Mat& grey, const Eigen::Vector2d& at_px) {

@@ -8,6 +8,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "core/median.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -83,9 +85,7 @@ double MedianContrast(const cv::Mat& grey, const CornerGrid& corners) {
       if (at_px) contrasts.push_back(ContrastAt(grey, grid, i, j, *at_px));
     }
   }
-  const auto middle = contrasts.begin() + static_cast<std::ptrdiff_t>(contrasts.size() / 2);
-  std::nth_element(contrasts.begin(), middle, contrasts.end());
-  return *middle;
+  return Median(std::move(contrasts));
 }
 
 // The corner near where the grid puts it, if its squares look like the grid's.

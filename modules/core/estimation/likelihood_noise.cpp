@@ -5,14 +5,10 @@
 
 #include <Eigen/LU>
 
+#include "core/median.hpp"
+
 namespace voqcal {
 namespace {
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // How far the outline's rays are from the chessboard's pose, in squared standard deviations of what
 // both claim.

@@ -9,6 +9,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "core/median.hpp"
 #include "core/selection/best_sets.hpp"
 
 namespace voqcal {
@@ -101,11 +102,7 @@ double MedianBoardDimensionErrorMm(const std::vector<BoardSample>& samples,
     const double error_mm = BoardDimensionErrorMm(sample.lidar.edge_lengths_m, board);
     if (std::isfinite(error_mm)) errors_mm.push_back(error_mm);
   }
-  if (errors_mm.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto upper = errors_mm.begin() + static_cast<std::ptrdiff_t>(errors_mm.size() / 2);
-  std::nth_element(errors_mm.begin(), upper, errors_mm.end());
-  if (errors_mm.size() % 2 == 1) return *upper;
-  return 0.5 * (*std::max_element(errors_mm.begin(), upper) + *upper);
+  return Median(std::move(errors_mm));
 }
 
 double NormalConditionNumber(const Eigen::Vector3d& n0,

@@ -12,6 +12,7 @@
 #include "core/assessment/scores.hpp"
 #include "core/board/lidar_board.hpp"
 #include "core/board/plane_fit.hpp"
+#include "core/median.hpp"
 #include "rig/poses_csv.hpp"
 #include "support/real_data.hpp"
 #include "support/real_sweeps.hpp"
@@ -21,11 +22,6 @@ namespace voqcal {
 namespace {
 
 constexpr double kRad = 3.14159265358979323846 / 180.0;
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? NAN : values[values.size() / 2];
-}
 
 class RealBoards : public testing::Test {
  protected:

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/board/lidar_board.hpp"
+#include "core/median.hpp"
 #include "support/real_data.hpp"
 #include "support/real_sweeps.hpp"
 
@@ -42,12 +43,6 @@ std::map<int, TableRow> LoadTable(const std::filesystem::path& path) {
     rows.clear();
   }
   return table;
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return NAN;
-  std::sort(values.begin(), values.end());
-  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
 }
 
 /// All that a sweep says, and the table's row of the same pose.

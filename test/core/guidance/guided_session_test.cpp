@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/median.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal {
@@ -36,8 +37,7 @@ std::vector<test::GuidedStep> LastSteps(bool is_guided, int num_poses) {
 double Median(const std::vector<test::GuidedStep>& steps, double test::GuidedStep::*error) {
   std::vector<double> errors;
   for (const test::GuidedStep& step : steps) errors.push_back(step.*error);
-  std::sort(errors.begin(), errors.end());
-  return errors[errors.size() / 2];
+  return voqcal::Median(std::move(errors));
 }
 
 TEST(GuidedSession, EndsBetterThanARandomOneOfAsManyPoses) {

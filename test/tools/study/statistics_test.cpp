@@ -40,11 +40,9 @@ TEST(EqualCountBins, CutsTheAscendingOrder) {
 
 TEST(Statistics, OfFewValues) {
   EXPECT_EQ(Mean({1, 2, 6}), 3.0);
-  EXPECT_EQ(Median({6, 1, 2}), 2.0);
-  EXPECT_EQ(Median({6, 1, 2, 4}), 3.0);
   EXPECT_EQ(Largest({1, 6, 2}), 6.0);
   EXPECT_DOUBLE_EQ(StandardDeviation({1, 2, 6}), std::sqrt(7.0));
-  EXPECT_TRUE(std::isnan(Mean({})) && std::isnan(Median({})) && std::isnan(Largest({})));
+  EXPECT_TRUE(std::isnan(Mean({})) && std::isnan(Largest({})));
   EXPECT_TRUE(std::isnan(StandardDeviation({1})));
 }
 

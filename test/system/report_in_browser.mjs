@@ -16,6 +16,9 @@ function inspect(sections) {
   };
   const root = document.documentElement;
   demand(root.scrollWidth <= root.clientWidth, `the page is ${root.scrollWidth} px wide`);
+  for (const block of document.querySelectorAll("pre")) {
+    demand(block.scrollWidth <= block.clientWidth, `"${block.textContent.trim().slice(0, 20)}..." is cut off`);
+  }
   for (const id of sections) {
     const section = document.getElementById(id);
     demand(section && section.textContent.trim().length > 40, `section ${id} is missing or empty`);

@@ -122,7 +122,7 @@ void AddScene(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   checks->push_back(
       {"Signs of a fault",
        fault.empty() ? Grade::kGood : Grade::kLook,
-       fault.empty() ? "None was found that would explain the errors better." : Sentence(fault)});
+       fault.empty() ? "Nothing was found that would explain the errors better." : Sentence(fault)});
 }
 
 std::string Headline(Grade grade) {

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "core/guidance/best_design.hpp"
@@ -97,9 +99,21 @@ class Bound {
         ExpectedSample(T_camera_board, T_truth_, rig_.board, rig_.camera, guidance_.sensors));
   }
 
-  std::vector<Eigen::MatrixXd> Asked() {
+  // One place, as what a pose there tells, until there are enough; most draws are out of view.
+  template <typename Draw>
+  std::vector<Eigen::MatrixXd> Places(Draw draw) {
+    constexpr int kMaxTrialsEach = 10000;
     std::vector<Eigen::MatrixXd> informations;
-    while (static_cast<int>(informations.size()) < args_.num_candidates) {
+    for (int trial = 0; trial < kMaxTrialsEach * args_.num_candidates; ++trial) {
+      const std::optional<Eigen::Isometry3d> pose = draw();
+      if (pose) informations.push_back(InformationAt(*pose));
+      if (static_cast<int>(informations.size()) == args_.num_candidates) return informations;
+    }
+    throw std::runtime_error("the rig has hardly a place where both sensors see the board");
+  }
+
+  std::vector<Eigen::MatrixXd> Asked() {
+    return Places([&]() -> std::optional<Eigen::Isometry3d> {
       Placement placement;
       placement.centre_px = {random_.Uniform(0, rig_.camera.width_px - 1),
                              random_.Uniform(0, rig_.camera.height_px - 1)};
@@ -112,20 +126,15 @@ class Bound {
       if (!pose ||
           !IsInView(
               *pose, T_truth_, rig_.board, rig_.camera, guidance_.sensors, guidance_.limits)) {
-        continue;
+        return {};
       }
-      informations.push_back(InformationAt(*pose));
-    }
-    return informations;
+      return pose;
+    });
   }
 
   std::vector<Eigen::MatrixXd> AtRandom(double max_roll_rad) {
-    std::vector<Eigen::MatrixXd> informations;
-    while (static_cast<int>(informations.size()) < args_.num_candidates) {
-      const auto pose = test::RandomHold(max_roll_rad, T_truth_, rig_, guidance_, &random_);
-      if (pose) informations.push_back(InformationAt(*pose));
-    }
-    return informations;
+    return Places(
+        [&] { return test::RandomHold(max_roll_rad, T_truth_, rig_, guidance_, &random_); });
   }
 
   const Eigen::MatrixXd& BestAddition(const Eigen::MatrixXd& known,

@@ -34,6 +34,17 @@ bool HavePointsAndPixels(const std::vector<const BoardSample*>& samples) {
   });
 }
 
+/// Whether each corner of the image has a ray: a lens fitted to boards in the middle may fold over
+/// before.
+bool ReachesTheCorners(const CameraModel& camera) {
+  for (const double x_px : {0.0, camera.width_px - 1.0}) {
+    for (const double y_px : {0.0, camera.height_px - 1.0}) {
+      if (!camera.Unproject({x_px, y_px})) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
@@ -60,6 +71,11 @@ LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
     return correction;
   }
   correction.camera = CorrectedCamera(camera, refined.lens.errors);
+  if (!correction.camera.Problems().empty() ||
+      (ReachesTheCorners(camera) && !ReachesTheCorners(correction.camera))) {
+    correction.problem = "the corrected lens does not reach the image's corners";
+    return correction;
+  }
   correction.T_camera_lidar = refined.T_camera_lidar;
   correction.covariance = refined.uncertainty.covariance;
   correction.held_out = HeldOut(samples, board, camera, refined, options);

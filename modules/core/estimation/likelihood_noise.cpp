@@ -39,7 +39,7 @@ double PlaneDisagreement(const LikelihoodPose& pose,
   LikelihoodState by_camera = state;
   by_camera.T_camera_board[index] = state.ByChessboard(pose);
   const PoseEquations returns = EquationsOfReturns(pose, by_camera, index, noise.range_m);
-  const Eigen::Matrix3d R = pose.T_camera_board.linear();
+  const Eigen::Matrix3d R = by_camera.T_camera_board[index].linear();
   Eigen::Matrix<double, 6, 3> plane = Eigen::Matrix<double, 6, 3>::Zero();
   plane.block<3, 2>(0, 0) = R.leftCols<2>();
   plane.block<3, 1>(3, 2) = R.col(2);

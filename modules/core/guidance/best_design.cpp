@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <Eigen/Cholesky>
 
@@ -48,6 +49,9 @@ Design BestDesign(const Eigen::MatrixXd& known,
                   const std::vector<Eigen::MatrixXd>& candidates,
                   const std::vector<Matrix6d>& forms,
                   double num_poses) {
+  if (candidates.empty() || forms.empty() || !(num_poses > 0)) {
+    throw std::invalid_argument("BestDesign: needs candidates, forms and a number of poses");
+  }
   const Eigen::Index size = known.rows();
   const Eigen::MatrixXd columns = Columns(candidates);
   const Eigen::MatrixXd extrinsic = Eigen::MatrixXd::Identity(size, 6);

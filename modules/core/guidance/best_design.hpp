@@ -22,6 +22,7 @@ struct Design {
 /// @param known       information of [extrinsic (6); faults] without the poses; positive definite.
 /// @param candidates  information of the same of one pose each.
 /// @param forms       worst error^2 = max over these of trace(form * covariance of the extrinsic).
+/// @throws std::invalid_argument without candidates, forms or a positive number of poses.
 Design BestDesign(const Eigen::MatrixXd& known,
                   const std::vector<Eigen::MatrixXd>& candidates,
                   const std::vector<Matrix6d>& forms,

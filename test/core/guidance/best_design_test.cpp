@@ -1,6 +1,7 @@
 #include "core/guidance/best_design.hpp"
 
 #include <cmath>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -77,6 +78,11 @@ TEST(BestDesign, IsNoWorseThanAnyOther) {
     for (const Matrix6d& form : forms) worst = std::max(worst, (form * covariance).trace());
     EXPECT_GE(std::sqrt(worst), design.least_error);
   }
+}
+
+TEST(BestDesign, NeedsSomethingToChooseFrom) {
+  EXPECT_THROW(BestDesign(Nothing(6), {}, {Matrix6d::Identity()}, kNumPoses),
+               std::invalid_argument);
 }
 
 }  // namespace

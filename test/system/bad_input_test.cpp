@@ -231,6 +231,28 @@ TEST_F(BadInput, AFileInTheWayOfOut) {
   EXPECT_EQ(ReadWholeFile(in_the_way), "precious");
 }
 
+TEST_F(BadInput, OutputThatCannotBeWrittenIsNamedWithTheCause) {
+  SessionLog(folder_.path() / "session").Reset();
+  const std::string log = Path("session/samples.lcm");
+  for (const std::string program : {"calibrate", "import_acfr"}) {
+    const std::vector<std::string> args =
+        program == "calibrate"
+            ? std::vector<std::string>{"--rig", rig_, "--log", log, "--out", "/proc/out"}
+            : std::vector<std::string>{Path("session"), "--rig", rig_, "--out", "/proc/out"};
+    std::vector<std::string> command = {test::Program(program)};
+    command.insert(command.end(), args.begin(), args.end());
+    ExpectRefused(command, HasSubstr(program + ": /proc/out: cannot be written: "));
+  }
+}
+
+TEST_F(BadInput, StandardOutputOnAFullDisk) {
+  const test::Outcome outcome = test::Run(
+      {"/bin/sh", "-c", "exec \"$0\" \"$1\" >/dev/full", test::Program("check_rig"), rig_});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err,
+            "check_rig: standard output: cannot be written: No space left on device\n");
+}
+
 TEST_F(BadInput, AFileThatIsThereIsOverwrittenOnlyIfForced) {
   const std::string there = folder_.Write("there", "precious");
   const std::string is_there = there + ": is there already (--force overwrites it)";

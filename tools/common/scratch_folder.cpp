@@ -60,7 +60,7 @@ ScratchFolder::ScratchFolder(const std::filesystem::path& beside) {
   }
   std::string name = target.string() + ".unfinished-XXXXXX";
   if (mkdtemp(name.data()) == nullptr) {
-    throw std::runtime_error(name + ": cannot make the folder: " + std::strerror(errno));
+    throw std::runtime_error(target.string() + ": cannot be written: " + std::strerror(errno));
   }
   path_ = name;
   is_outermost_ = g_path[0] == '\0' && name.size() < sizeof(g_path);

@@ -126,13 +126,12 @@ CalibrationResult AssessorNode::Result() {
                                   result.T_camera_lidar,
                                   result.averaged.T_camera_lidar,
                                   rig_.scene_check);
-  // What the result has taken out of the lidar's ranges is no longer wrong.
-  const std::vector<BoardSample> corrected = CorrectedSamples(samples, result.lidar_bias);
-  result.diagnosis = Diagnose(SamplesWithout(corrected, {}),
+  result.diagnosis = Diagnose(samples,
                               averaged_->num_inconsistent,
                               rig_.board,
                               rig_.camera,
                               result.T_camera_lidar,
+                              result.lidar_bias.IsObservable(),
                               rig_.diagnosis);
 
   // Lens against lens: another method's scores would be compared with the likelihood's.

@@ -263,7 +263,7 @@ Evidence EvidenceOf(const extrinsic_refined_t& refined,
   evidence.num_cells = assessment.num_image_cells;
   evidence.scene = SceneVerdictOf(assessment.scene_check.verdict);
   evidence.scene_reason = assessment.scene_check.reason;
-  if (!assessment.findings.empty()) evidence.likeliest_fault = assessment.findings[0].text;
+  evidence.likeliest_fault = LikeliestFault(assessment.findings);
   return evidence;
 }
 

@@ -49,6 +49,7 @@ finding_t ToMessage(const Finding& finding) {
   finding_t message{};
   message.cause = finding.cause;
   message.text = finding.text;
+  message.is_dealt_with = finding.is_dealt_with ? 1 : 0;
   message.value = finding.value;
   message.standard_error = finding.standard_error;
   message.unit = finding.unit;

@@ -161,7 +161,7 @@ def predicted_figure(errors):
     if not errors:
         return None
     lines = [
-        ("line-x", [(e["range_m"], e["centre_mm"]) for e in errors]),
+        ("line-x", [(e["range_m"], e["centre_mm"]) for e in errors if e["centre_mm"] is not None]),
         ("line-y", [(e["range_m"], e["corner_mm"]) for e in errors if e["corner_mm"] is not None]),
     ]
     return svg.curves("Predicted error by range", "range of a point (m)", "predicted error (mm)", lines, True, True)

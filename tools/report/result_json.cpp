@@ -235,8 +235,7 @@ Evidence EvidenceOf(const CalibrationResult& result) {
   evidence.num_cells = static_cast<int>(result.held_out_by_cell.size());
   evidence.scene = result.scene_check.verdict;
   evidence.scene_reason = result.scene_check.reason;
-  const auto& findings = result.diagnosis.findings;
-  if (!findings.empty()) evidence.likeliest_fault = findings[0].text;
+  evidence.likeliest_fault = LikeliestFault(result.diagnosis.findings);
   return evidence;
 }
 

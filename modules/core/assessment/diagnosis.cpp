@@ -17,11 +17,12 @@ constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kLeastForModels = 5;  // of 6 residuals each, for 6 + 2 parameters
 
 // Takes the samples that stand out from the equations, the worst first: each one pulls the fit.
-void SetOutliersAside(std::vector<FaultEquation>* equations,
+void SetOutliersAside(const std::vector<FaultParameter>& known,
                       const DiagnosisOptions& options,
+                      std::vector<FaultEquation>* equations,
                       Diagnosis* diagnosis) {
   while (equations->size() > kLeastForModels) {
-    const FaultFit fit = FitFaults(*equations, {});
+    const FaultFit fit = FitFaults(*equations, known);
     if (!fit.is_usable) return;
     const std::vector<double> errors_m = CentreErrorsM(*equations, fit);
     const auto worst = std::max_element(errors_m.begin(), errors_m.end());
@@ -50,6 +51,7 @@ void JudgeInconsistent(int num_inconsistent, std::size_t num_used, Diagnosis* di
   if (num_inconsistent == 0) return;
   Finding finding;
   finding.cause = "moving sample";
+  finding.is_dealt_with = true;
   finding.value = num_inconsistent;
   finding.text = Format(
       "%d of %zu samples contradict the others: the board moved, or something else was taken for "
@@ -185,12 +187,15 @@ Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
                    const BoardSpec& board,
                    const CameraModel& camera,
                    const Eigen::Isometry3d& T_camera_lidar,
+                   bool has_range_offset,
                    const DiagnosisOptions& options) {
   RequireUsable("DiagnosisOptions", options.Problems());
   Diagnosis diagnosis;
   std::vector<FaultEquation> equations = MakeFaultEquations(samples, board, camera, T_camera_lidar);
-  SetOutliersAside(&equations, options, &diagnosis);
-  JudgeModels(equations, options, &diagnosis);
+  std::vector<FaultParameter> known;
+  if (has_range_offset) known.push_back(kRangeOffset);
+  SetOutliersAside(known, options, &equations, &diagnosis);
+  JudgeModels(equations, known, options, &diagnosis);
   JudgeOutline(samples, board, options, &diagnosis);
   Rank(&diagnosis.findings);
   JudgeInconsistent(num_inconsistent, samples.size(), &diagnosis);

@@ -35,8 +35,9 @@ struct DiagnosisOptions {
 
 /// One thing that is likely wrong.
 struct Finding {
-  std::string cause;  ///< "focal length", "moving sample", ...: one of a few.
-  std::string text;   ///< A sentence with the evidence.
+  std::string cause;           ///< "focal length", "moving sample", ...: one of a few.
+  std::string text;            ///< A sentence with the evidence.
+  bool is_dealt_with = false;  ///< Nothing is left to be done about it.
   double value = std::numeric_limits<double>::quiet_NaN();  ///< In `unit`; NaN if it has none.
   double standard_error = std::numeric_limits<double>::quiet_NaN();
   std::string unit;
@@ -60,12 +61,15 @@ struct Diagnosis {
 /// @param samples  those that the result is made from.
 /// @param num_inconsistent  how many others contradict them (FindConsistent).
 /// @param T_camera_lidar  the result.
+/// @param has_range_offset  the result has taken a range offset out of the lidar's ranges: then it
+///     is free in every model compared, and no finding.
 /// @throws std::invalid_argument if `options` has Problems().
 Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
                    int num_inconsistent,
                    const BoardSpec& board,
                    const CameraModel& camera,
                    const Eigen::Isometry3d& T_camera_lidar,
+                   bool has_range_offset,
                    const DiagnosisOptions& options);
 
 }  // namespace voqcal

@@ -34,12 +34,12 @@ bool HavePointsAndPixels(const std::vector<const BoardSample*>& samples) {
   });
 }
 
-/// Whether each corner of the image has a ray: a lens fitted to boards in the middle may fold over
-/// before.
-bool ReachesTheCorners(const CameraModel& camera) {
-  for (const double x_px : {0.0, camera.width_px - 1.0}) {
-    for (const double y_px : {0.0, camera.height_px - 1.0}) {
-      if (!camera.Unproject({x_px, y_px})) return false;
+/// Whether each corner of the image that had a ray still has one: a lens fitted to boards in the
+/// middle may fold over before.
+bool ReachesAsFar(const CameraModel& corrected, const CameraModel& given) {
+  for (const double x_px : {0.0, given.width_px - 1.0}) {
+    for (const double y_px : {0.0, given.height_px - 1.0}) {
+      if (given.Unproject({x_px, y_px}) && !corrected.Unproject({x_px, y_px})) return false;
     }
   }
   return true;
@@ -70,12 +70,16 @@ LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
     correction.problem = "the samples do not tell it";
     return correction;
   }
-  correction.camera = CorrectedCamera(camera, refined.lens.errors);
-  if (!correction.camera.Problems().empty() ||
-      (ReachesTheCorners(camera) && !ReachesTheCorners(correction.camera))) {
+  const CameraModel corrected = CorrectedCamera(camera, refined.lens.errors);
+  if (!corrected.Problems().empty()) {
+    correction.problem = "the corrected camera's " + corrected.Problems().front();
+    return correction;
+  }
+  if (!ReachesAsFar(corrected, camera)) {
     correction.problem = "the corrected lens does not reach the image's corners";
     return correction;
   }
+  correction.camera = corrected;
   correction.T_camera_lidar = refined.T_camera_lidar;
   correction.covariance = refined.uncertainty.covariance;
   correction.held_out = HeldOut(samples, board, camera, refined, options);

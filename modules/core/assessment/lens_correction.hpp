@@ -33,8 +33,9 @@ struct LensCorrection {
 };
 
 /// Refines with the lens' errors (RefineWithLens). There is no correction where the samples lack
-/// the lidar's points or the chessboards' pixels, or do not tell it, or where the error of poses
-/// held out (MethodTrial::ErrorMm) does not fall by a tenth against the intrinsics that were given.
+/// the lidar's points or the chessboards' pixels, or do not tell it, where the corrected lens
+/// reaches less of the image, or where the error of poses held out (CombinedErrorMm) does not fall
+/// by a tenth against the intrinsics that were given.
 ///
 /// @param T_camera_lidar    refined with the intrinsics that were given: the start.
 /// @param held_out_without  the likelihood's scores with the intrinsics that were given.

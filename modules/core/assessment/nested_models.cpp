@@ -134,11 +134,19 @@ bool IsWorthAWord(const Candidate& candidate,
 }  // namespace
 
 void JudgeModels(const std::vector<FaultEquation>& equations,
+                 const std::vector<FaultParameter>& known,
                  const DiagnosisOptions& options,
                  Diagnosis* diagnosis) {
-  FaultFit now = FitFaults(equations, {});
-  std::vector<FaultParameter> fitted;
+  FaultFit now = FitFaults(equations, known);
+  std::vector<FaultParameter> fitted = known;
   std::vector<Suspect> suspects = Suspects(options);
+  const auto remove_suspects = [&suspects](const std::vector<FaultParameter>& faults) {
+    suspects.erase(std::remove_if(suspects.begin(),
+                                  suspects.end(),
+                                  [&faults](const Suspect& each) { return each.faults == faults; }),
+                   suspects.end());
+  };
+  for (const FaultParameter fault : known) remove_suspects({fault});
   while (now.is_usable && !suspects.empty()) {
     std::vector<Candidate> candidates;
     for (const Suspect& suspect : suspects) {
@@ -146,7 +154,7 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
       faults.insert(faults.end(), suspect.faults.begin(), suspect.faults.end());
       Candidate candidate{suspect, FitFaults(equations, faults)};
       if (!candidate.fit.is_usable) {
-        if (fitted.empty()) {
+        if (fitted == known) {
           diagnosis->not_judged.push_back(std::string(suspect.cause) +
                                           ": the samples leave it open");
         }
@@ -163,12 +171,7 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
     diagnosis->findings.push_back(MakeFinding(*best, now));
     now = best->fit;
     fitted.insert(fitted.end(), best->suspect.faults.begin(), best->suspect.faults.end());
-    suspects.erase(std::remove_if(suspects.begin(),
-                                  suspects.end(),
-                                  [&best](const Suspect& each) {
-                                    return each.faults == best->suspect.faults;
-                                  }),
-                   suspects.end());
+    remove_suspects(std::vector<FaultParameter>(best->suspect.faults));
   }
 }
 

@@ -10,7 +10,9 @@ namespace voqcal {
 /// Compares the plain fit with fits that have one more group of faults: adds the group that helps
 /// most, again and again, until none is worth a word. Appends what was added to the findings, and
 /// what the samples leave open to what was not judged.
+/// @param known  faults that the result allows for: they are part of every fit, and no finding.
 void JudgeModels(const std::vector<FaultEquation>& equations,
+                 const std::vector<FaultParameter>& known,
                  const DiagnosisOptions& options,
                  Diagnosis* diagnosis);
 

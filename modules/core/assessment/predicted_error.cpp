@@ -1,5 +1,6 @@
 #include "core/assessment/predicted_error.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -59,9 +60,13 @@ std::vector<PredictedError> PredictErrors(const Eigen::Isometry3d& T_camera_lida
       error.centre_px = centre->px;
       error.centre_mm = centre->mm;
     }
-    for (const auto& corner :
-         {at(0, 0), at(right_px, 0), at(0, bottom_px), at(right_px, bottom_px)}) {
-      if (!corner) continue;  // beyond what the lens model can say
+    const std::array corners = {
+        at(0, 0), at(right_px, 0), at(0, bottom_px), at(right_px, bottom_px)};
+    // The worst is not known where the lens model ends before a corner.
+    const bool are_all_known = std::all_of(
+        corners.begin(), corners.end(), [](const auto& corner) { return corner.has_value(); });
+    for (const auto& corner : corners) {
+      if (!are_all_known) break;
       error.corner_px = std::fmax(error.corner_px, corner->px);  // the number, not the NaN
       error.corner_mm = std::fmax(error.corner_mm, corner->mm);
     }

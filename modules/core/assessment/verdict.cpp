@@ -24,14 +24,12 @@ constexpr Limits kNumCells{5, 2};  // of the 9 parts of the image
 constexpr Limits kLeftOutShare{0.15, 0.4};
 
 Grade GradeOf(double value, const Limits& limits) {
-  if (std::isnan(value)) return Grade::kLook;
   const double sign = limits.good <= limits.bad ? 1.0 : -1.0;
   if (sign * value <= sign * limits.good) return Grade::kGood;
   return sign * value > sign * limits.bad ? Grade::kBad : Grade::kLook;
 }
 
 std::string Number(double value, int digits, const std::string& unit) {
-  if (std::isnan(value)) return "unknown";
   char text[64];
   std::snprintf(text, sizeof(text), "%.*f ", digits, value);
   return text + unit;
@@ -52,22 +50,42 @@ void Add(const std::string& name,
   checks->push_back({name, grade, grade == Grade::kGood ? fact : fact + " " + advice});
 }
 
+/// What is not known tells nothing of causes.
+void AddNumber(const std::string& name,
+               double value,
+               const Limits& limits,
+               const std::string& fact,
+               const std::string& advice,
+               std::vector<VerdictCheck>* checks) {
+  if (std::isnan(value)) {
+    checks->push_back({name, Grade::kLook, "Unknown: too few poses to tell. Take more samples."});
+    return;
+  }
+  Add(name, GradeOf(value, limits), fact, advice, checks);
+}
+
 void AddFit(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   const double ratio = evidence.held_out_mm / evidence.in_sample_mm;
-  Add("Poses it never saw",
-      GradeOf(evidence.held_out_mm, kHeldOutMm),
+  AddNumber(
+      "Poses it never saw",
+      evidence.held_out_mm,
+      kHeldOutMm,
       "The board's centre lands " + Number(evidence.held_out_mm, 1, "mm") +
           " (mean) from where the camera sees it, on poses left out of the fit.",
       "If a few poses stand out, discard them; if most are off, check the board and the camera in "
       "the rig file.",
       checks);
-  Add("Poses it was made from",
-      GradeOf(ratio, kOverfitRatio),
+  AddNumber(
+      "Poses it was made from",
+      ratio,
+      kOverfitRatio,
       "That is " + Number(ratio, 2, "times") + " the error on the poses that made the result.",
       "The result fits these too well: take more samples.",
       checks);
-  Add("Board directions",
-      GradeOf(evidence.normal_deg, kNormalDeg),
+  AddNumber(
+      "Board directions",
+      evidence.normal_deg,
+      kNormalDeg,
       "Lidar and camera disagree by " + Number(evidence.normal_deg, 2, "degrees") +
           " (mean) on where the board faces.",
       "The lidar's ranges are probably biased, which the centres do not show: take more samples, "
@@ -76,16 +94,18 @@ void AddFit(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
 }
 
 void AddCertainty(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
-  Add("Certainty of the rotation",
-      GradeOf(evidence.sigma_deg, kSigmaDeg),
-      "Largest standard deviation " + Number(evidence.sigma_deg, 3, "degrees") + ".",
-      "Take more samples, far to the left and right and high and low.",
-      checks);
-  Add("Certainty of the translation",
-      GradeOf(evidence.sigma_mm, kSigmaMm),
-      "Largest standard deviation " + Number(evidence.sigma_mm, 1, "mm") + ".",
-      "Take more samples, near ones too, tilted to all sides.",
-      checks);
+  AddNumber("Certainty of the rotation",
+            evidence.sigma_deg,
+            kSigmaDeg,
+            "Largest standard deviation " + Number(evidence.sigma_deg, 3, "degrees") + ".",
+            "Take more samples, far to the left and right and high and low.",
+            checks);
+  AddNumber("Certainty of the translation",
+            evidence.sigma_mm,
+            kSigmaMm,
+            "Largest standard deviation " + Number(evidence.sigma_mm, 1, "mm") + ".",
+            "Take more samples, near ones too, tilted to all sides.",
+            checks);
 }
 
 void AddPoses(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
@@ -119,10 +139,10 @@ void AddScene(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
         checks);
   }
   const std::string& fault = evidence.likeliest_fault;
-  checks->push_back(
-      {"Signs of a fault",
-       fault.empty() ? Grade::kGood : Grade::kLook,
-       fault.empty() ? "Nothing was found that would explain the errors better." : Sentence(fault)});
+  checks->push_back({"Signs of a fault",
+                     fault.empty() ? Grade::kGood : Grade::kLook,
+                     fault.empty() ? "Nothing was found that would explain the errors better."
+                                   : Sentence(fault)});
 }
 
 std::string Headline(Grade grade) {

@@ -43,4 +43,14 @@ struct Verdict {
 
 Verdict Judge(const Evidence& evidence);
 
+/// Of the first of the findings, or of their messages, about which something is to be done; empty
+/// if there is none.
+template <typename Findings>
+std::string LikeliestFault(const Findings& findings) {
+  for (const auto& finding : findings) {
+    if (!finding.is_dealt_with) return finding.text;
+  }
+  return {};
+}
+
 }  // namespace voqcal

@@ -49,7 +49,7 @@ std::array<bool, 4> CoveredPast(const std::array<OutlineEdge, 4>& edges,
   const Eigen::Isometry3d T_lidar_board = TransformOf(m.frame, m.outline.pose);
   const Eigen::Vector2d half_m(m.model.width_m / 2, m.model.height_m / 2);
   const bool is_cropped = std::all_of(edges.begin(), edges.end(), [](const OutlineEdge& edge) {
-    return kFewMisses * edge.num_misses < edge.num_hits;
+    return kFewMisses * edge.num_misses <= edge.num_hits;  // both 0 between scan lines
   });
   std::array<bool, 4> is_covered{};
   for (std::size_t i = 0; i < 4; ++i) {

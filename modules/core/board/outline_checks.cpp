@@ -6,10 +6,10 @@
 
 namespace voqcal {
 
-bool Agreement::IsBoardLike(double slack) const {
+bool Agreement::IsBoardLike() const {
   constexpr double kMaxMissesInside = 0.15;
   constexpr double kMaxHitsOutside = 0.25;  // pole, hands and legs may lie in the plane
-  return 1.0 - hits_inside <= slack * kMaxMissesInside && hits_outside <= slack * kMaxHitsOutside;
+  return 1.0 - hits_inside <= kMaxMissesInside && hits_outside <= kMaxHitsOutside;
 }
 
 Agreement Compare(const std::vector<OutlineBeam>& beams,

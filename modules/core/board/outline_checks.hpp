@@ -19,8 +19,8 @@ struct Agreement {
   /// ...and of the half towards each edge, in BoardSpec's order.
   std::array<double, 4> covered_half{};
 
-  /// Nearly all hits inside, nearly all misses outside. `slack` above 1 loosens it for a rough fit.
-  bool IsBoardLike(double slack = 1.0) const;
+  /// Nearly all hits inside, nearly all misses outside.
+  bool IsBoardLike() const;
 };
 
 /// @param blocked_m  Where beams that end before the plane would have met it.

@@ -16,7 +16,7 @@ constexpr double kFlat = 10.0;
 /// L at one side.
 struct Share {
   double inside = 1.0;  ///< L...
-  double rest = 0.0;    ///< ...and 1 - L, exact where L is nearly 1.
+  double rest = 0.0;    ///< ...and 1 - L; of the nearer side exact where L is nearly 1.
 };
 
 /// L at two opposite sides: their arguments always add to the same, so one exponential does both.

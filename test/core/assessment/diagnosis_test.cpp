@@ -38,8 +38,13 @@ class Session {
     const RefinedExtrinsic refined =
         RefineExtrinsic(samples, given_camera, test::TestExtrinsic(), {});
     EXPECT_TRUE(refined.IsUsable());
-    return Diagnose(
-        samples, num_inconsistent, given_board, given_camera, refined.T_camera_lidar, {});
+    return Diagnose(samples,
+                    num_inconsistent,
+                    given_board,
+                    given_camera,
+                    refined.T_camera_lidar,
+                    has_range_offset,
+                    {});
   }
 
   /// Every range reads too long by this.
@@ -57,6 +62,7 @@ class Session {
   CameraModel true_camera = test::TestCamera();
   CameraModel given_camera = test::TestCamera();
   int num_inconsistent = 0;
+  bool has_range_offset = false;
 
  private:
   void SeeByCamera(BoardSample* sample, test::Random* random) const {
@@ -188,19 +194,37 @@ TEST(Diagnose, FindsTwoFaultsAtOnce) {
               ::testing::UnorderedElementsAre("focal length", "lidar range offset"));
 }
 
+TEST(Diagnose, AnOffsetThatWasTakenOutIsNoFindingAndHidesNoOther) {
+  Session session;
+  session.given_camera.fx_px *= 1.02;
+  session.given_camera.fy_px *= 1.02;
+  session.OffsetRanges(0.05);
+  session.has_range_offset = true;
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_THAT(diagnosis.findings, SizeIs(1));
+  EXPECT_EQ(diagnosis.findings[0].cause, "focal length");
+  EXPECT_NEAR(diagnosis.findings[0].value, -2.0, 3 * diagnosis.findings[0].standard_error);
+}
+
 TEST(Diagnose, SaysWhatItCannotJudgeWithoutCorners) {
   const auto samples = test::SynthesizeSamples(Session::Noisy());
-  const Diagnosis diagnosis = Diagnose(
-      test::Pointers(samples), 0, test::TestBoard(), test::TestCamera(), test::TestExtrinsic(), {});
+  const Diagnosis diagnosis = Diagnose(test::Pointers(samples),
+                                       0,
+                                       test::TestBoard(),
+                                       test::TestCamera(),
+                                       test::TestExtrinsic(),
+                                       false,
+                                       {});
   EXPECT_THAT(diagnosis.findings, IsEmpty());
   EXPECT_THAT(diagnosis.not_judged, ::testing::Contains(HasSubstr("focal length")));
   EXPECT_THAT(diagnosis.not_judged, ::testing::Contains(HasSubstr("time offset")));
 }
 
 TEST(Diagnose, NoSamplesAreTooFewPoses) {
-  EXPECT_EQ(FirstCause(Diagnose(
-                {}, 0, test::TestBoard(), test::TestCamera(), Eigen::Isometry3d::Identity(), {})),
-            "too few or too similar poses");
+  EXPECT_EQ(
+      FirstCause(Diagnose(
+          {}, 0, test::TestBoard(), test::TestCamera(), Eigen::Isometry3d::Identity(), false, {})),
+      "too few or too similar poses");
 }
 
 TEST(DiagnosisOptions, NamesEachProblem) {

@@ -33,6 +33,7 @@ TEST(ToMessage, OfAFindingCarriesItsEvidence) {
   Finding finding;
   finding.cause = "focal length";
   finding.text = "too long";
+  finding.is_dealt_with = true;
   finding.value = -2;
   finding.standard_error = 0.1;
   finding.unit = "%";
@@ -43,6 +44,7 @@ TEST(ToMessage, OfAFindingCarriesItsEvidence) {
   const finding_t message = ToMessage(finding);
   EXPECT_EQ(message.cause, "focal length");
   EXPECT_EQ(message.text, "too long");
+  EXPECT_EQ(message.is_dealt_with, 1);
   EXPECT_EQ(message.value, -2);
   EXPECT_EQ(message.standard_error, 0.1);
   EXPECT_EQ(message.unit, "%");

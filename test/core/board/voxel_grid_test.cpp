@@ -1,0 +1,60 @@
+#include "core/board/voxel_grid.hpp"
+
+#include <cstddef>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/synthetic_samples.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr double kVoxelM = 0.2;
+
+// A tall wall, a floor and a cloud of single points, on both sides of the origin.
+std::vector<Eigen::Vector3d> Points() {
+  test::Random random(3);
+  std::vector<Eigen::Vector3d> points_m;
+  for (int i = 0; i < 400; ++i) {
+    points_m.emplace_back(1.0, random.Uniform(-2, 2), random.Uniform(-2, 3));
+    points_m.emplace_back(random.Uniform(-2, 2), random.Uniform(-2, 2), -2.0);
+    points_m.emplace_back(random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1));
+  }
+  return points_m;
+}
+
+Eigen::Array3d CellOf(const VoxelGrid& grid, std::size_t cell) {
+  return (grid.MeanM(cell).array() / kVoxelM).floor();
+}
+
+TEST(VoxelGrid, KnowsTheCellsWithinEachReach) {
+  const VoxelGrid grid(Points(), kVoxelM);
+  ASSERT_GT(grid.NumCells(), 300u);
+  for (const int reach : {1, 2}) {
+    for (std::size_t at = 0; at < grid.NumCells(); ++at) {
+      std::vector<std::size_t> expected;
+      for (std::size_t i = 0; i < grid.NumCells(); ++i) {
+        const Eigen::Array3d steps = (CellOf(grid, i) - CellOf(grid, at)).abs();
+        if ((steps <= reach).all()) expected.push_back(i);
+      }
+      std::vector<std::size_t> near;
+      grid.ForEachNear(at, reach, [&near](std::size_t i) { near.push_back(i); });
+      ASSERT_EQ(near, expected) << "cell " << at << " reach " << reach;
+    }
+  }
+}
+
+TEST(VoxelGrid, KeepsEachPointOnce) {
+  const std::vector<Eigen::Vector3d> points_m = Points();
+  const VoxelGrid grid(points_m, kVoxelM);
+  PointMoments all;
+  for (std::size_t i = 0; i < grid.NumCells(); ++i) all.Add(grid.Moments(i));
+  Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point_m : points_m) sum_m += point_m;
+  EXPECT_EQ(all.num, static_cast<double>(points_m.size()));
+  EXPECT_LT((all.sum_m - sum_m).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace voqcal

@@ -14,11 +14,27 @@
 namespace voqcal {
 namespace {
 
-// What was printed may be lost only now: into a file on a full disk, say.
+// What was printed may be lost only now: into a file on a full disk, say. Where it was lost before,
+// glibc has forgotten it: only the streams' state tells, and no cause is known.
 void FlushOutput() {
-  if (std::cout.flush() && std::fflush(stdout) == 0) return;
-  throw std::runtime_error(std::string("standard output: cannot be written: ") +
-                           std::strerror(errno));
+  errno = 0;
+  std::cout.flush();
+  const bool is_lost_now = std::fflush(stdout) != 0;
+  if (!is_lost_now && std::cout && std::ferror(stdout) == 0) return;
+  const std::string cause = errno == 0 ? "" : std::string(": ") + std::strerror(errno);
+  throw std::runtime_error("standard output: cannot be written" + cause);
+}
+
+/// @return the exit status of `steps` and of what they print.
+int StatusOf(const std::string& program, const std::function<void()>& steps) {
+  try {
+    steps();
+    FlushOutput();
+  } catch (const std::exception& error) {
+    PrintError(program, error.what());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
 }
 
 }  // namespace
@@ -29,20 +45,13 @@ int RunTool(CLI::App* app, int argc, const char* const* argv, const std::functio
   try {
     app->parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {
-    return app->exit(help_or_version);
+    return StatusOf(app->get_name(), [&] { app->exit(help_or_version); });
   } catch (const CLI::ParseError& error) {
     PrintError(app->get_name(), error.what() + std::string(" (--help lists the flags)"));
     return kUsageError;
   }
   LogToStderr(app->get_name(), false);
-  try {
-    body();
-    FlushOutput();
-  } catch (const std::exception& error) {
-    PrintError(app->get_name(), error.what());
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return StatusOf(app->get_name(), body);
 }
 
 }  // namespace voqcal

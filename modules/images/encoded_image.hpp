@@ -6,9 +6,6 @@
 
 namespace voqcal {
 
-/// More are not decoded: 400 MB; no camera has as many.
-constexpr std::int64_t kMaxImagePixels = 1 << 27;
-
 /// What the first bytes of an encoded image say, without decoding it.
 struct EncodedImageInfo {
   bool is_jpeg = false;  ///< Otherwise PNG.

@@ -1,15 +1,18 @@
 #include "images/jpeg.hpp"
 
 #include <cstddef>
+#include <new>
 #include <stdexcept>
+#include <utility>
 
 // It uses FILE and size_t without including them.
 #include <cstdio>
 
+#include <jerror.h>
 #include <jpeglib.h>
 
 #include "images/c_library.hpp"
-#include "images/encoded_image.hpp"
+#include "images/new_image.hpp"
 
 namespace voqcal {
 namespace {
@@ -32,9 +35,27 @@ struct JpegErrors {
   }
 };
 
+template <typename Info>
+[[noreturn]] void Fail(const Info* info, const char* cause) {
+  reinterpret_cast<JpegErrors*>(info->err)->failure.Jump(cause);
+}
+
 /// libjpeg's own goes on with an end marker, and the missing rest is grey.
-boolean FailAtEnd(j_decompress_ptr info) {
-  reinterpret_cast<JpegErrors*>(info->err)->failure.Jump("it is cut off");
+boolean FailAtEnd(j_decompress_ptr info) { Fail(info, "it is cut off"); }
+
+/// Of what libjpeg only warns: an end marker before the image's end, where the rest is grey too.
+void FailAtEarlyEnd(j_common_ptr common, int /*level*/) {
+  const auto* info = reinterpret_cast<j_decompress_ptr>(common);
+  if (info->err->msg_code == JWRN_HIT_MARKER && info->unread_marker == JPEG_EOI) {
+    Fail(info, "it is cut off");
+  }
+}
+
+/// Each scan of a progressive JPEG takes the time of a whole image, and may be a few bytes.
+void FailAtManyScans(j_common_ptr common) {
+  constexpr int kMaxScans = 200;  // encoders make some ten
+  const auto* info = reinterpret_cast<j_decompress_ptr>(common);
+  if (info->input_scan_number > kMaxScans) Fail(info, "it has too many scans");
 }
 
 class Decompressor {
@@ -42,6 +63,9 @@ class Decompressor {
   Decompressor() {
     info.err = &errors_.manager;
     CallC(&errors_.failure, [this] { jpeg_create_decompress(&info); });
+    errors_.manager.emit_message = FailAtEarlyEnd;
+    progress_.progress_monitor = FailAtManyScans;
+    info.progress = &progress_;
   }
   ~Decompressor() { jpeg_destroy_decompress(&info); }
   Decompressor(const Decompressor&) = delete;
@@ -56,6 +80,7 @@ class Decompressor {
 
  private:
   JpegErrors errors_;
+  jpeg_progress_mgr progress_{};
 };
 
 /// Bytes that grow as libjpeg fills them. The manager comes first, as in JpegErrors.
@@ -64,12 +89,12 @@ struct GrowingBytes {
   Bytes bytes;
 
   GrowingBytes() {
-    manager.init_destination = [](j_compress_ptr info) noexcept { Of(info)->Grow(1U << 16U); };
-    manager.empty_output_buffer = [](j_compress_ptr info) noexcept -> boolean {
-      Of(info)->Grow(Of(info)->bytes.size());
+    manager.init_destination = [](j_compress_ptr info) { Grow(info, 1U << 16U); };
+    manager.empty_output_buffer = [](j_compress_ptr info) -> boolean {
+      Grow(info, Of(info)->bytes.size());
       return TRUE;
     };
-    manager.term_destination = [](j_compress_ptr info) noexcept {
+    manager.term_destination = [](j_compress_ptr info) {
       Of(info)->bytes.resize(Of(info)->bytes.size() - info->dest->free_in_buffer);
     };
   }
@@ -79,11 +104,21 @@ struct GrowingBytes {
     return reinterpret_cast<GrowingBytes*>(info->dest);
   }
 
-  void Grow(std::size_t num_more) {
+  /// No exception may pass through libjpeg, and no jump leave a handler of one.
+  static void Grow(j_compress_ptr info, std::size_t num_more) {
+    if (!Of(info)->HasGrown(num_more)) Fail(info, "no memory for it");
+  }
+
+  bool HasGrown(std::size_t num_more) {
     const std::size_t num_used = bytes.size();
-    bytes.resize(num_used + num_more);
+    try {
+      bytes.resize(num_used + num_more);
+    } catch (const std::bad_alloc&) {
+      return false;
+    }
     manager.next_output_byte = bytes.data() + num_used;
     manager.free_in_buffer = num_more;
+    return true;
   }
 };
 
@@ -103,7 +138,7 @@ class Compressor {
     CallC(&errors_.failure, steps);
   }
 
-  const Bytes& bytes() const { return destination_.bytes; }
+  Bytes TakeBytes() { return std::move(destination_.bytes); }
 
   jpeg_compress_struct info{};
 
@@ -135,18 +170,17 @@ cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes, int reduction) {
     info.src->fill_input_buffer = FailAtEnd;
     jpeg_read_header(&info, TRUE);
   });
-  if (std::int64_t{info.image_width} * info.image_height > kMaxImagePixels) {
-    throw std::runtime_error("too many pixels");
-  }
+  // Before the first row of a progressive one there are all coefficients, two bytes each.
+  RequireFewPixels(info.image_width,
+                   info.image_height,
+                   jpeg_has_multiple_scans(&info) ? kMaxImagePixels / 2 : kMaxImagePixels);
   if (info.num_components == 4) throw std::runtime_error("it is a CMYK one");
   const bool is_gray = info.num_components == 1;
   info.out_color_space = is_gray ? JCS_GRAYSCALE : JCS_EXT_BGR;
   info.scale_num = 1;
   info.scale_denom = static_cast<unsigned>(reduction);
   decompressor.Call([&] { jpeg_start_decompress(&info); });
-  cv::Mat image(static_cast<int>(info.output_height),
-                static_cast<int>(info.output_width),
-                is_gray ? CV_8UC1 : CV_8UC3);
+  cv::Mat image = NewImage(info.output_width, info.output_height, is_gray ? CV_8UC1 : CV_8UC3);
   decompressor.Call([&] {
     while (info.output_scanline < info.output_height) {
       JSAMPROW row = image.ptr(static_cast<int>(info.output_scanline));
@@ -174,7 +208,7 @@ std::vector<std::uint8_t> EncodeJpeg(const cv::Mat& image, int quality) {
     }
     jpeg_finish_compress(&info);
   });
-  return compressor.bytes();
+  return compressor.TakeBytes();
 }
 
 }  // namespace voqcal

@@ -12,8 +12,9 @@ namespace voqcal {
 /// @param reduction  1, 2, 4 or 8: the image at this fraction of its size, rounded up, for a
 ///     fraction of the work.
 /// @throws std::runtime_error with the cause: the bytes cannot be decoded, have four channels
-///     (CMYK) or more than kMaxImagePixels. What libjpeg only warns of, such as data damaged in
-///     their middle, gives an image with wrong parts.
+///     (CMYK), end before the image does, or have more than kMaxImagePixels (progressive ones half
+///     of it and 200 scans), or there is no memory. What else libjpeg only warns of, such as data
+///     damaged in their middle, gives an image with wrong parts.
 cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes, int reduction = 1);
 
 /// @param image    8-bit: GRAY, BGR or BGRA, whose alpha is left out.

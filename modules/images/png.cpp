@@ -7,7 +7,7 @@
 #include <png.h>
 
 #include "images/c_library.hpp"
-#include "images/encoded_image.hpp"
+#include "images/new_image.hpp"
 
 namespace voqcal {
 namespace {
@@ -24,6 +24,8 @@ class Reader {
     png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure_, fail, ignore);
     info = png_create_info_struct(png);
     if (info == nullptr) throw std::runtime_error("libpng cannot be used");
+    // Texts, profiles and the like, a thousand of up to 8 MB each, are not even unpacked.
+    Call([this] { png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1); });
     png_set_read_fn(png, this, [](png_structp from, png_bytep to, std::size_t num_bytes) {
       static_cast<Reader*>(png_get_io_ptr(from))->Read(to, num_bytes);
     });
@@ -73,14 +75,16 @@ cv::Mat DecodePng(const std::vector<std::uint8_t>& bytes) {
   reader.Call([&] { png_read_info(reader.png, reader.info); });
   const std::int64_t width_px = png_get_image_width(reader.png, reader.info);
   const std::int64_t height_px = png_get_image_height(reader.png, reader.info);
-  if (width_px * height_px > kMaxImagePixels) throw std::runtime_error("too many pixels");
+  RequireFewPixels(width_px, height_px, kMaxImagePixels);
   const bool is_gray = png_get_color_type(reader.png, reader.info) == PNG_COLOR_TYPE_GRAY;
-  cv::Mat image(
-      static_cast<int>(height_px), static_cast<int>(width_px), is_gray ? CV_8UC1 : CV_8UC3);
+  cv::Mat image = NewImage(width_px, height_px, is_gray ? CV_8UC1 : CV_8UC3);
   std::vector<png_bytep> rows;
   for (int row = 0; row < image.rows; ++row) rows.push_back(image.ptr(row));
+  reader.Call([&] { Transform(reader.png, reader.info, is_gray); });
+  if (png_get_rowbytes(reader.png, reader.info) != image.step) {
+    throw std::logic_error("libpng's rows are none of 8-bit GRAY or BGR");
+  }
   reader.Call([&] {
-    Transform(reader.png, reader.info, is_gray);
     png_read_image(reader.png, rows.data());
     png_read_end(reader.png, nullptr);
   });

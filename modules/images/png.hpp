@@ -11,7 +11,7 @@ namespace voqcal {
 /// 16 bits the upper 8 are kept.
 ///
 /// @throws std::runtime_error with the cause: the bytes cannot be decoded, are damaged, or have
-///     more than kMaxImagePixels.
+///     more than kMaxImagePixels, or there is no memory.
 cv::Mat DecodePng(const std::vector<std::uint8_t>& bytes);
 
 }  // namespace voqcal

@@ -83,10 +83,7 @@ void RequireHeader(const image_t& message) {
     Fail("the " + format + " has " + Size(info->width_px, info->height_px) +
          " px, the message says " + Size(message.width, message.height));
   }
-  if (std::int64_t{info->width_px} * info->height_px > kMaxImagePixels) {
-    Fail("the " + format + " has " + Size(info->width_px, info->height_px) + " px: too large");
-  }
-  // libjpeg makes up the missing rest of a cut image in grey, without an error.
+  // Told without the work of decoding, for those who pass it on.
   if (!info->has_end) Fail("the " + format + " is cut off");
 }
 

@@ -52,6 +52,17 @@ void WriteColours(png_structp png, png_infop info, const PngForm& form) {
   }
 }
 
+void WriteText(png_structp png, png_infop info, std::size_t num_bytes) {
+  std::string keyword = "Comment";
+  std::string letters(num_bytes, 'a');
+  png_text text{};
+  text.compression = PNG_TEXT_COMPRESSION_zTXt;
+  text.key = keyword.data();
+  text.text = letters.data();
+  text.text_length = letters.size();
+  png_set_text(png, info, &text, 1);
+}
+
 }  // namespace
 
 cv::Mat Picture(int width_px, int height_px, int type) {
@@ -121,6 +132,7 @@ std::vector<std::uint8_t> PngFile(int width_px, int height_px, const PngForm& fo
                PNG_COMPRESSION_TYPE_DEFAULT,
                PNG_FILTER_TYPE_DEFAULT);
   WriteColours(png, info, form);
+  if (form.num_text_bytes > 0) WriteText(png, info, form.num_text_bytes);
   png_write_info(png, info);
   const std::size_t row_bytes = png_get_rowbytes(png, info);
   Bytes noise = RandomBytes(row_bytes * static_cast<std::size_t>(height_px));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -31,8 +32,9 @@ struct PngForm {
   int colour_type = 0;  ///< PNG_COLOR_TYPE_...
   int bit_depth = 8;
   bool is_interlaced = false;
-  bool has_transparency = false;  ///< Chunk tRNS.
-  double gamma = 0;               ///< Chunk gAMA, unless 0.
+  bool has_transparency = false;   ///< Chunk tRNS.
+  double gamma = 0;                ///< Chunk gAMA, unless 0.
+  std::size_t num_text_bytes = 0;  ///< Chunk zTXt, unless 0.
 };
 
 std::vector<std::uint8_t> PngFile(int width_px, int height_px, const PngForm& form);

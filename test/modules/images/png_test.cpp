@@ -1,10 +1,12 @@
 #include "images/png.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 #include <png.h>
+#include <sys/resource.h>
 
 #include "modules/images/encoded_files.hpp"
 
@@ -79,6 +81,30 @@ TEST(DecodePng, TakesDamageAsOpenCvDoes) {
   }
 }
 
+// ISO/IEC 15948: a chunk is the length of its data, 4 bytes; its type, 4; the data; a CRC, 4.
+// libpng on its own unpacks and keeps a thousand texts of up to 8 MB.
+TEST(DecodePng, KeepsNoTexts) {
+  constexpr std::size_t kTextBytes = 7000000;
+  constexpr int kNumTexts = 20;
+  const Bytes type = {'z', 'T', 'X', 't'};
+  const Bytes with_text = PngFile(8, 6, {"", PNG_COLOR_TYPE_GRAY, 8, false, false, 0, kTextBytes});
+  const auto at = std::search(with_text.begin(), with_text.end(), type.begin(), type.end());
+  ASSERT_NE(at, with_text.end());
+  const Bytes chunk(at - 4, at + 8 + at[-2] * 256 + at[-1]);
+  Bytes png(with_text.begin(), at - 4);
+  for (int i = 0; i < kNumTexts; ++i) png.insert(png.end(), chunk.begin(), chunk.end());
+  png.insert(png.end(), at - 4, with_text.end());
+  const auto peak_kb = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+  };
+  const auto before_kb = peak_kb();
+  EXPECT_EQ(DecodePng(png).size(), cv::Size(8, 6));
+  // Unpacked they are 140 MB.
+  EXPECT_LT(peak_kb() - before_kb, 20000);
+}
+
 TEST(DecodePng, RefusesASizeThatNoCameraHas) {
   Bytes png = PngFile(1, 1, {"", PNG_COLOR_TYPE_GRAY});
   constexpr std::size_t kHeaderAt = 12;  // chunk IHDR: its type, then width, height, 5 bytes, CRC
@@ -96,7 +122,7 @@ TEST(DecodePng, RefusesASizeThatNoCameraHas) {
   for (unsigned i = 0; i < 4; ++i) {
     png[kHeaderAt + 17 + i] = static_cast<std::uint8_t>(crc >> (24U - 8U * i));
   }
-  EXPECT_EQ(CauseOf(png), "too many pixels");
+  EXPECT_EQ(CauseOf(png), "32001 x 32001 px are too many");
 }
 
 }  // namespace

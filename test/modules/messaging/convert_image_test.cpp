@@ -1,5 +1,6 @@
 #include "messaging/convert_image.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -182,15 +183,43 @@ INSTANTIATE_TEST_SUITE_P(
                            }}));
 
 TEST(ImageMessage, IsRefusedBeforeItsHeaderCanAskForGigabytes) {
-  auto bytes = Encoded(Picture(), ".png");
-  for (const std::size_t at : {16U, 20U}) bytes[at + 2] = bytes[at + 3] = 0xFF;  // 65535 a side
+  auto bytes = Encoded(Picture(), ".jpg");
+  const std::vector<std::uint8_t> size = {8, 0, 24, 0, 40};  // SOF0: bits a sample, height, width
+  const auto at = std::search(bytes.begin(), bytes.end(), size.begin(), size.end());
+  ASSERT_NE(at, bytes.end());
+  at[1] = at[2] = at[3] = at[4] = 0xFD;
   const image_t message = EncodedToMessage(bytes, 0, 1);
-  EXPECT_EQ(message.width, 65535);
-  try {
-    FromMessage(message);
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("too large"));
+  EXPECT_EQ(message.width, 65021);
+  EXPECT_THAT(CauseOf(message), HasSubstr("65021 x 65021 px are too many"));
+}
+
+/// OpenCV's memory, of which nothing is left.
+class NoMemory : public cv::MatAllocator {
+ public:
+  NoMemory() { cv::Mat::setDefaultAllocator(this); }
+  ~NoMemory() override { cv::Mat::setDefaultAllocator(cv::Mat::getStdAllocator()); }
+  NoMemory(const NoMemory&) = delete;
+  NoMemory& operator=(const NoMemory&) = delete;
+
+ private:
+  cv::UMatData* allocate(int,
+                         const int*,
+                         int,
+                         void*,
+                         std::size_t*,
+                         cv::AccessFlag,
+                         cv::UMatUsageFlags) const override {
+    throw cv::Exception(cv::Error::StsNoMem, "none left", "allocate", __FILE__, __LINE__);
+  }
+  bool allocate(cv::UMatData*, cv::AccessFlag, cv::UMatUsageFlags) const override { return false; }
+  void deallocate(cv::UMatData*) const override {}
+};
+
+TEST(ImageMessage, IsRefusedIfThereIsNoMemoryForIt) {
+  for (const std::string extension : {".png", ".jpg"}) {
+    const image_t message = EncodedToMessage(Encoded(Picture(), extension), 0, 1);
+    const NoMemory no_memory;
+    EXPECT_THAT(CauseOf(message), HasSubstr("cannot be decoded: no memory for it"));
   }
 }
 

@@ -131,7 +131,7 @@ CalibrationResult AssessorNode::Result() {
                               rig_.board,
                               rig_.camera,
                               result.T_camera_lidar,
-                              result.lidar_bias.IsObservable(),
+                              result.lidar_bias.common,
                               rig_.diagnosis);
 
   // Lens against lens: another method's scores would be compared with the likelihood's.

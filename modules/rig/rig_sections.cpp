@@ -306,6 +306,7 @@ void ReadDiagnosis(YamlSection* assessor, DiagnosisOptions* options) {
   section.Read("min_principal_point_px", &options->min_principal_point_px);
   section.Read("min_square_scale", &options->min_square_scale);
   section.Read("min_range_offset_m", &options->min_range_offset_m);
+  section.Read("max_range_offset_m", &options->max_range_offset_m);
   section.Read("min_edge_error_m", &options->min_edge_error_m);
   section.Read("max_outlier_factor", &options->max_outlier_factor);
   section.Read("min_samples", &options->min_samples);

@@ -3,11 +3,14 @@
 #include <string>
 
 #include "core/assessment/scores.hpp"
+#include "core/assessment/verdict.hpp"
 #include "rig/result_file.hpp"
 
 namespace voqcal {
 
-/// A result as a few lines for a terminal.
+Verdict VerdictOf(const CalibrationResult& result);
+
+/// A result as a few lines for a terminal, its verdict first.
 std::string Summary(const CalibrationResult& result);
 
 /// "centre 3.41 +- 1.60 mm (largest 7.02), 2.1 +- 0.9 px; corners ...; normals ...".

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <yaml-cpp/yaml.h>
 
+#include "calibrate/summary.hpp"
 #include "core/assessment/verdict.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/selection/voq.hpp"
@@ -222,25 +223,8 @@ Json FramesPart(const OfflineRun& run) {
   return {{"counts", counts}, {"rejected", rejected}, {"losses", run.Losses()}};
 }
 
-Evidence EvidenceOf(const CalibrationResult& result) {
-  const Vector6d sigma = result.covariance.diagonal().cwiseSqrt();
-  Evidence evidence;
-  evidence.held_out_mm = result.held_out.centre_mm.mean;
-  evidence.in_sample_mm = result.in_sample.centre_mm.mean;
-  evidence.normal_deg = result.held_out.normal_deg.mean;
-  evidence.sigma_deg = kDegPerRad * sigma.head<3>().maxCoeff();
-  evidence.sigma_mm = 1e3 * sigma.tail<3>().maxCoeff();
-  evidence.num_used = static_cast<int>(result.used_ids.size());
-  evidence.num_samples = static_cast<int>(result.used_ids.size() + result.rejected.size());
-  evidence.num_cells = static_cast<int>(result.held_out_by_cell.size());
-  evidence.scene = result.scene_check.verdict;
-  evidence.scene_reason = result.scene_check.reason;
-  evidence.likeliest_fault = LikeliestFault(result.diagnosis.findings);
-  return evidence;
-}
-
 Json VerdictPart(const CalibrationResult& result) {
-  const Verdict verdict = Judge(EvidenceOf(result));
+  const Verdict verdict = VerdictOf(result);
   Json checks = Json::array();
   for (const VerdictCheck& check : verdict.checks) {
     checks.push_back(

@@ -47,6 +47,27 @@ void SetOutliersAside(const std::vector<FaultParameter>& known,
   }
 }
 
+// Beyond what any lidar does: then something else is wrong that looks like it.
+void JudgeRangeOffset(const BiasEstimate& range_offset,
+                      const DiagnosisOptions& options,
+                      Diagnosis* diagnosis) {
+  constexpr double kSigmas = 2.0;
+  const double least_m = std::abs(range_offset.value_m) - kSigmas * range_offset.standard_error_m;
+  if (!range_offset.is_observable || !(least_m > options.max_range_offset_m)) return;
+  Finding finding;
+  finding.cause = "lidar range offset";
+  finding.value = 1e3 * range_offset.value_m;
+  finding.standard_error = 1e3 * range_offset.standard_error_m;
+  finding.unit = "mm";
+  finding.text = Format(
+      "%.0f +- %.0f mm were taken out of the lidar's ranges, more than lidars err: squares or a "
+      "focal length given too %s look the same; check board.square_m, camera.fx_px and fy_px",
+      finding.value,
+      finding.standard_error,
+      range_offset.value_m < 0 ? "large" : "small");
+  diagnosis->findings.push_back(finding);
+}
+
 void JudgeInconsistent(int num_inconsistent, std::size_t num_used, Diagnosis* diagnosis) {
   if (num_inconsistent == 0) return;
   Finding finding;
@@ -174,6 +195,7 @@ std::vector<std::string> DiagnosisOptions::Problems() const {
   problems.RequirePositive("min_principal_point_px", min_principal_point_px);
   problems.RequirePositive("min_square_scale", min_square_scale);
   problems.RequirePositive("min_range_offset_m", min_range_offset_m);
+  problems.RequirePositive("max_range_offset_m", max_range_offset_m);
   problems.RequirePositive("min_edge_error_m", min_edge_error_m);
   problems.RequirePositive("max_outlier_factor", max_outlier_factor);
   problems.RequirePositive("min_samples", min_samples);
@@ -187,16 +209,17 @@ Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
                    const BoardSpec& board,
                    const CameraModel& camera,
                    const Eigen::Isometry3d& T_camera_lidar,
-                   bool has_range_offset,
+                   const BiasEstimate& range_offset,
                    const DiagnosisOptions& options) {
   RequireUsable("DiagnosisOptions", options.Problems());
   Diagnosis diagnosis;
   std::vector<FaultEquation> equations = MakeFaultEquations(samples, board, camera, T_camera_lidar);
   std::vector<FaultParameter> known;
-  if (has_range_offset) known.push_back(kRangeOffset);
+  if (range_offset.is_observable) known.push_back(kRangeOffset);
   SetOutliersAside(known, options, &equations, &diagnosis);
   JudgeModels(equations, known, options, &diagnosis);
   JudgeOutline(samples, board, options, &diagnosis);
+  JudgeRangeOffset(range_offset, options, &diagnosis);
   Rank(&diagnosis.findings);
   JudgeInconsistent(num_inconsistent, samples.size(), &diagnosis);
   JudgePoses(samples, options, &diagnosis);

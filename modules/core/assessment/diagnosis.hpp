@@ -10,6 +10,7 @@
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
+#include "core/estimation/lidar_bias.hpp"
 
 namespace voqcal {
 
@@ -22,6 +23,7 @@ struct DiagnosisOptions {
   double min_principal_point_px = 4;
   double min_square_scale = 0.005;
   double min_range_offset_m = 0.01;
+  double max_range_offset_m = 0.03;  ///< That was taken out; datasheets claim as much accuracy.
   double min_edge_error_m = 0.02;  ///< Of the mean edge length; beams of finite width widen edges.
   double max_outlier_factor = 6;   ///< A sample so many times the median error off stands out.
   int min_samples = 8;             ///< Fewer are too few...
@@ -61,15 +63,16 @@ struct Diagnosis {
 /// @param samples  those that the result is made from.
 /// @param num_inconsistent  how many others contradict them (FindConsistent).
 /// @param T_camera_lidar  the result.
-/// @param has_range_offset  the result has taken a range offset out of the lidar's ranges: then it
-///     is free in every model compared, and no finding.
+/// @param range_offset  what the result has taken out of the lidar's ranges, if it is observable:
+///     then it is free in every model compared, and a finding only if no lidar errs so much. Too
+///     large squares look like too short ranges.
 /// @throws std::invalid_argument if `options` has Problems().
 Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
                    int num_inconsistent,
                    const BoardSpec& board,
                    const CameraModel& camera,
                    const Eigen::Isometry3d& T_camera_lidar,
-                   bool has_range_offset,
+                   const BiasEstimate& range_offset,
                    const DiagnosisOptions& options);
 
 }  // namespace voqcal

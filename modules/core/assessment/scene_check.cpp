@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/format.hpp"
+#include "core/median.hpp"
 #include "core/problems.hpp"
 
 namespace voqcal {
@@ -186,6 +187,33 @@ Eigen::Vector3d Sigma(const std::vector<Edge>& edges,
   return (sum / kNumHalves).cwiseSqrt();
 }
 
+// Between the scan lines that edges lie on; 0 where these are too dense to be told apart.
+double LineSpacingRad(const std::vector<Edge>& edges) {
+  constexpr double kGapRad = 0.3 * kRadPerDeg;
+  std::vector<double> elevations_rad;
+  for (const Edge& edge : edges) {
+    elevations_rad.push_back(std::asin(edge.position_lidar_m.normalized().z()));
+  }
+  std::sort(elevations_rad.begin(), elevations_rad.end());
+  std::vector<double> gaps_rad;
+  for (std::size_t i = 1; i < elevations_rad.size(); ++i) {
+    const double gap_rad = elevations_rad[i] - elevations_rad[i - 1];
+    if (gap_rad > kGapRad) gaps_rad.push_back(gap_rad);
+  }
+  return gaps_rad.empty() ? 0.0 : Median(gaps_rad);
+}
+
+// What halves of the scene do not show, as they share it: an edge that crosses the lines ends
+// anywhere between two, so that turns across the lines by up to their spacing s look alike.
+// Uniform: s / sqrt(12) for one edge, by the root of their number less for as many as there are
+// sectors.
+Eigen::Vector3d LineSigma(const std::vector<Edge>& edges, const Eigen::Isometry3d& T_camera_lidar) {
+  const double sigma_rad = LineSpacingRad(edges) / std::sqrt(12.0 * kNumSectors);
+  Eigen::Vector3d ahead = Eigen::Vector3d::Zero();
+  for (const Edge& edge : edges) ahead += (T_camera_lidar * edge.position_lidar_m).normalized();
+  return sigma_rad * T_camera_lidar.linear().col(2).cross(ahead).normalized().cwiseAbs();
+}
+
 // Whether it is the axis at all that the peak is owed to: between scan lines lie plateaus, on which
 // the peak strays far and the halves' peaks with it, for next to no score.
 Eigen::Vector3d GainSigmas(const std::vector<Edge>& edges,
@@ -307,7 +335,9 @@ SceneCheck CheckScene(const std::vector<SceneView>& views,
   check.probes = Probe(edges, camera, T_camera_lidar);
   check.offset_rad = Climb(edges, camera, T_camera_lidar, BestTurn(check), kFirstStepRad);
   check.peak_score = Score(edges, camera, Turned(T_camera_lidar, check.offset_rad));
-  check.sigma_rad = Sigma(edges, camera, T_camera_lidar, check.offset_rad);
+  const Eigen::Vector3d of_halves = Sigma(edges, camera, T_camera_lidar, check.offset_rad);
+  check.sigma_rad =
+      (of_halves.cwiseAbs2() + LineSigma(edges, T_camera_lidar).cwiseAbs2()).cwiseSqrt();
   check.gain_sigmas = GainSigmas(edges, camera, T_camera_lidar, check.offset_rad);
   Judge(options, &check);
   return check;

@@ -54,7 +54,8 @@ struct SceneCheck {
   // The best score of any turn about the camera, with the translation kept, and where it is.
   double peak_score = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector3d offset_rad = kUnknown;  ///< PerturbLeft by it leads to the peak.
-  Eigen::Vector3d sigma_rad = kUnknown;   ///< By fitting halves of the scene.
+  Eigen::Vector3d sigma_rad =
+      kUnknown;  ///< By fitting halves of the scene, and by the lines' spacing.
   /// What the peak's score loses when it is turned back about an axis, in standard errors of that.
   Eigen::Vector3d gain_sigmas = kUnknown;
 };

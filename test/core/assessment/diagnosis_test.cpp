@@ -43,7 +43,7 @@ class Session {
                     given_board,
                     given_camera,
                     refined.T_camera_lidar,
-                    has_range_offset,
+                    range_offset,
                     {});
   }
 
@@ -62,7 +62,7 @@ class Session {
   CameraModel true_camera = test::TestCamera();
   CameraModel given_camera = test::TestCamera();
   int num_inconsistent = 0;
-  bool has_range_offset = false;
+  BiasEstimate range_offset;  ///< Taken out.
 
  private:
   void SeeByCamera(BoardSample* sample, test::Random* random) const {
@@ -199,11 +199,22 @@ TEST(Diagnose, AnOffsetThatWasTakenOutIsNoFindingAndHidesNoOther) {
   session.given_camera.fx_px *= 1.02;
   session.given_camera.fy_px *= 1.02;
   session.OffsetRanges(0.05);
-  session.has_range_offset = true;
+  session.range_offset = {0.05, 0.012, true};
   const Diagnosis diagnosis = session.Run();
   ASSERT_THAT(diagnosis.findings, SizeIs(1));
   EXPECT_EQ(diagnosis.findings[0].cause, "focal length");
   EXPECT_NEAR(diagnosis.findings[0].value, -2.0, 3 * diagnosis.findings[0].standard_error);
+}
+
+TEST(Diagnose, AnOffsetThatNoLidarHasIsAFinding) {
+  Session session;
+  session.range_offset = {-0.05, 0.004, true};
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_THAT(diagnosis.findings, SizeIs(1));
+  EXPECT_EQ(diagnosis.findings[0].cause, "lidar range offset");
+  EXPECT_THAT(diagnosis.findings[0].text, HasSubstr("too large look the same"));
+  session.range_offset.standard_error_m = 0.015;  // may be 20 mm
+  EXPECT_THAT(session.Run().findings, IsEmpty());
 }
 
 TEST(Diagnose, SaysWhatItCannotJudgeWithoutCorners) {
@@ -213,7 +224,7 @@ TEST(Diagnose, SaysWhatItCannotJudgeWithoutCorners) {
                                        test::TestBoard(),
                                        test::TestCamera(),
                                        test::TestExtrinsic(),
-                                       false,
+                                       {},
                                        {});
   EXPECT_THAT(diagnosis.findings, IsEmpty());
   EXPECT_THAT(diagnosis.not_judged, ::testing::Contains(HasSubstr("focal length")));
@@ -223,7 +234,7 @@ TEST(Diagnose, SaysWhatItCannotJudgeWithoutCorners) {
 TEST(Diagnose, NoSamplesAreTooFewPoses) {
   EXPECT_EQ(
       FirstCause(Diagnose(
-          {}, 0, test::TestBoard(), test::TestCamera(), Eigen::Isometry3d::Identity(), false, {})),
+          {}, 0, test::TestBoard(), test::TestCamera(), Eigen::Isometry3d::Identity(), {}, {})),
       "too few or too similar poses");
 }
 

@@ -69,6 +69,13 @@ TEST_F(CheckSceneTest, AgreesWithTheTruth) {
   EXPECT_LT(std::abs(check.offset_rad.y()), 0.14 * kDeg);
 }
 
+// The VLP-16's lines are 2 degrees apart; the camera's x axis lies along them.
+TEST_F(CheckSceneTest, CannotBeSurerAcrossTheLinesThanTheyAllow) {
+  const SceneCheck check =
+      CheckScene(*views_, Camera(), test::TestExtrinsic(), test::TestExtrinsic(), {});
+  EXPECT_GT(check.sigma_rad.x(), 0.95 * 2.0 * kDeg / 12);
+}
+
 TEST_F(CheckSceneTest, DisagreesWithATurnAndSaysByHowMuch) {
   const SceneCheck check = Check(Turned(0, 0.8, 0));
   EXPECT_EQ(check.verdict, SceneVerdict::kDisagrees) << check.reason;

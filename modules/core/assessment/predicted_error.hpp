@@ -11,10 +11,10 @@
 namespace voqcal {
 
 /// How far a lidar point is expected to land from where the camera sees it, by the extrinsic's
-/// covariance alone: root mean square, across the camera's ray. NaN where the lens model ends before
-/// the point.
+/// covariance alone: root mean square, across the camera's ray. NaN where the lens model ends
+/// before the point.
 struct PredictedError {
-  double range_m = 0;  ///< Of the point from the camera.
+  double range_m = 0;                                           ///< Of the point from the camera.
   double centre_px = std::numeric_limits<double>::quiet_NaN();  ///< In the middle of the image...
   double centre_mm = std::numeric_limits<double>::quiet_NaN();
   double corner_px = std::numeric_limits<double>::quiet_NaN();  ///< ...and in its worst corner.

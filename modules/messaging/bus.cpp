@@ -13,6 +13,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "rig/lcm_url.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -63,8 +65,6 @@ std::string CreationProblem(const std::string& url) {
     text += ": is its broker running? It is lcm.lcm.TCPService of lcm.jar";
   } else if (StartsWith(url, "file://")) {
     text += ": is it a readable LCM log?";
-  } else {
-    text += ": LCM knows udpm://, tcpq://, memq:// and file://";
   }
   return text;
 }
@@ -162,6 +162,8 @@ void Bus::Subscription::OnMessage(const lcm_recv_buf_t* buffer, const char*, voi
 
 Bus::Bus(const std::string& url) : impl_(std::make_unique<Impl>()) {
   const std::string used_url = url.empty() ? kDefaultLcmUrl : url;
+  const std::string problem = LcmUrlProblem(used_url);
+  if (!problem.empty()) throw std::runtime_error("LCM URL '" + used_url + "' " + problem);
   const auto warning = ReceiveBufferWarning(used_url, GrantedReceiveBuffer(RecvBufSize(used_url)));
   if (warning) spdlog::warn(*warning);
   impl_->lcm = lcm_create(used_url.c_str());

@@ -41,7 +41,8 @@ class Bus {
   /// Warns if large messages cannot arrive by this URL (ReceiveBufferWarning).
   ///
   /// @param url  an LCM URL; "memq://" for one process alone; empty for kDefaultLcmUrl.
-  /// @throws std::runtime_error if LCM cannot be created, with the likely remedy.
+  /// @throws std::runtime_error for a URL with an LcmUrlProblem; if LCM cannot be created, with the
+  ///     likely remedy.
   explicit Bus(const std::string& url);
   ~Bus();
   Bus(const Bus&) = delete;

@@ -1,6 +1,7 @@
 // tools/up, status and down; and what a killed module changes in the end: nothing.
 
 #include <csignal>
+#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,6 +62,21 @@ TEST_F(Supervision, UpRunsTheModulesUntilDown) {
   EXPECT_THAT(ReadWholeFile(session_ + "/assessor.txt"), HasSubstr("assessor: info"));
   EXPECT_GT(std::filesystem::file_size(session_ + "/raw.lcm"), 0u);
   EXPECT_EQ(Down().status, 1);  // nothing is left to stop
+}
+
+TEST_F(Supervision, ADriverHasEndedOnlyInTheSessionThatRuns) {
+  std::filesystem::create_directories(session_);
+  const std::string end =
+      "INFO spawned: 'camera_driver' with pid 9\n"
+      "INFO exited: camera_driver (exit status 0; expected)\n";
+  folder_.Write("a session/supervisord.log", end);
+  const std::vector<std::string> status = {
+      test::Tool("status"), rig_, "--session", session_, "--once", "--modules", "camera_driver"};
+  EXPECT_THAT(test::Run(status).out, HasSubstr("\nsilent  camera_driver\n"));
+
+  ASSERT_EQ(Up({"--only", "voq_selector"}).status, 0);
+  std::ofstream(session_ + "/supervisord.log", std::ios::app) << end;
+  EXPECT_THAT(test::Run(status).out, HasSubstr("camera_driver          done\n"));
 }
 
 TEST_F(Supervision, AKilledModuleIsStartedAgain) {

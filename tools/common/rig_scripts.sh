@@ -19,6 +19,10 @@ require_programs() {
   [ -x "$bin/check_rig" ] || fail "voqcal is not built yet: run tools/build"
 }
 
+is_running() {  # SESSION: its supervisor answers; one that was killed leaves socket and log behind
+  [ -S "$1/supervisor.sock" ] && supervisorctl -c "$1/supervisor.conf" pid >/dev/null 2>&1
+}
+
 # The session's folder, absolute: DIR, or logs/NAME-OF-THE-RIG below the working directory, or, without
 # either, the one session that runs below logs/.
 session_folder() {  # DIR RIG

@@ -18,6 +18,9 @@ namespace {
 // Of each sensor: some seconds of JPEG or of a 128-beam lidar, 36 raw images of 1920 x 1208.
 constexpr std::size_t kMaxBufferBytes = 256U << 20U;
 
+/// A reason in CALIB_EVENT.
+constexpr char kByCommand[] = "by command";
+
 }  // namespace
 
 SampleCollectorNode::SampleCollectorNode(const Rig& rig,
@@ -84,7 +87,13 @@ void SampleCollectorNode::Accept(const BoardSample& sample,
 void SampleCollectorNode::AcceptWithScene(const BoardSample& sample) {
   const SampleScene scene = {sweeps_.Find(sample.utime), images_.Find(sample.camera_utime)};
   if (!scene.IsWhole()) Count("accepted without its scene");
-  Accept(sample, scene, scene.IsWhole() ? "" : "its sweep or image did not arrive: no scene");
+  std::string remark = is_capture_requested_ ? kByCommand : "";
+  if (!scene.IsWhole()) {
+    remark += remark.empty() ? "" : "; ";
+    remark += "its sweep or image did not arrive: no scene";
+  }
+  is_capture_requested_ = false;
+  Accept(sample, scene, remark);
 }
 
 void SampleCollectorNode::Finish() {
@@ -135,6 +144,7 @@ void SampleCollectorNode::OnBoard(const BoardMessage& message, std::int64_t* new
 void SampleCollectorNode::OnCommand(const command_t& message) {
   if (message.command == "capture") {
     picker_.RequestCapture();
+    is_capture_requested_ = true;
   } else if (message.command == "discard") {
     Discard(message);
   } else if (message.command == "finish") {
@@ -165,7 +175,7 @@ void SampleCollectorNode::Discard(const command_t& message) {
   log_sha256_ = session_.Sha256();
   picker_.SetKnown(samples());
   Count("discarded");
-  Announce(message.utime, "discarded", *id, "by command");
+  Announce(message.utime, "discarded", *id, kByCommand);
   PublishSamples();
 }
 

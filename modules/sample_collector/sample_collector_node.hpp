@@ -54,7 +54,8 @@ class SampleCollectorNode : public Module {
   bool AreDetectorsPastFinish() const;
   void SayFinished();
   void Accept(const BoardSample& sample, const SampleScene& scene, const std::string& remark);
-  /// With what was seen at its first frame, if both frames are at hand.
+  /// With what was seen at its first frame, if both frames are at hand. The first sample after the
+  /// command "capture" is the captured one (SamplePicker::RequestCapture).
   void AcceptWithScene(const BoardSample& sample);
   void Decide(const std::vector<PickerDecision>& decisions);
   void Announce(std::int64_t utime,
@@ -71,6 +72,7 @@ class SampleCollectorNode : public Module {
   SessionLog session_;
   std::string log_sha256_;
   std::int64_t event_seq_ = 0;
+  bool is_capture_requested_ = false;  // by command: the next sample will be that
   bool is_finish_requested_ = false;
   std::optional<std::int64_t> finish_utime_;  // of the newest frame when that was; if one had come
   std::int64_t newest_lidar_utime_ = std::numeric_limits<std::int64_t>::min();   // of a board...

@@ -8,10 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "messaging/bus.hpp"
+#include "rig/atomic_file.hpp"
 #include "sample_collector/session_log.hpp"
 #include "support/synthetic_samples.hpp"
 #include "support/temporary_folder.hpp"
 #include "system/system_test.hpp"
+#include "voqcal/command_t.hpp"
+#include "voqcal/event_t.hpp"
 #include "voqcal/samples_t.hpp"
 
 namespace voqcal {
@@ -35,7 +38,8 @@ class Command : public ::testing::Test {
     bool is_heard = false;
     bus.Subscribe<samples_t>(
         rig.channels.calib_samples, Queue::kState, [&](const samples_t&) { is_heard = true; });
-    while (!is_heard) bus.HandleOnce(std::chrono::milliseconds(100));
+    for (int i = 0; i < 300 && !is_heard; ++i) bus.HandleOnce(std::chrono::milliseconds(100));
+    ASSERT_TRUE(is_heard) << ReadWholeFile(folder_.path() / "collector.txt");
   }
 
   test::Outcome Give(std::vector<std::string> args) const {
@@ -66,6 +70,45 @@ TEST_F(Command, SaysWhatCouldNotBeDone) {
   const test::Outcome no_frames = Give({"capture"});
   EXPECT_EQ(no_frames.status, 1);
   EXPECT_THAT(no_frames.err, HasSubstr("no sample yet: no pair of frames came"));
+}
+
+/// What `command` prints when a collector, alive, answers it with these events.
+class CommandToACollectorThat : public Command {
+ protected:
+  std::string Answers(const std::string& command, const std::vector<event_t>& events) const {
+    const Rig rig = LoadRig(rig_);
+    Bus bus(rig.lcm_url);
+    bus.Subscribe<command_t>(rig.channels.calib_command, Queue::kEvery, [&](const command_t&) {
+      bus.Publish(rig.channels.calib_samples, samples_t{});
+      for (const event_t& event : events) bus.Publish(rig.channels.calib_event, event);
+    });
+    const auto out = folder_.path() / "out.txt";
+    test::Process process({test::Program("command"), command, "--rig", rig_}, out);
+    // More than its patience of 3 s.
+    for (int i = 0; i < 50 && ReadWholeFile(out).empty(); ++i) {
+      bus.HandleOnce(std::chrono::milliseconds(100));
+    }
+    EXPECT_EQ(process.Wait(), 0);
+    return ReadWholeFile(out);
+  }
+};
+
+event_t Accepted(std::int64_t sample_id, const std::string& reason) {
+  event_t event{};
+  event.kind = "accepted";
+  event.sample_id = sample_id;
+  event.reason = reason;
+  return event;
+}
+
+TEST_F(CommandToACollectorThat, TakesASampleByItselfFirst) {
+  EXPECT_EQ(Answers("capture", {Accepted(7, ""), Accepted(8, "by command")}),
+            "sample 8 taken by command\n");
+}
+
+TEST_F(CommandToACollectorThat, WaitsForSlowDetectors) {
+  EXPECT_EQ(Answers("finish", {}),
+            "sent; the detectors are still at work on earlier frames (--wait waits for them)\n");
 }
 
 TEST_F(Command, SaysThatNobodyAnswered) {

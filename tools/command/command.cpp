@@ -26,6 +26,9 @@ using Clock = std::chrono::steady_clock;
 // A collector republishes each second, and takes up to two to see that no frame comes any more.
 constexpr std::chrono::seconds kPatience{3};
 
+// A command may get lost. To finish, said again, asks for nothing more.
+constexpr std::chrono::seconds kSayFinishAgain{1};
+
 constexpr char kNoAnswer[] = "the sample collector did not answer: is the rig running?";
 
 struct CommandArgs {
@@ -49,15 +52,14 @@ std::int64_t Send(const CommandArgs& args, const Rig& rig, Bus* bus) {
 }
 
 /// What an event says of the command that was sent at `utime`; nothing if it is about another
-/// thing.
+/// thing. A sample that was accepted by itself is not what "capture" asked for.
 /// @throws std::runtime_error with the reason, if the collector refused it.
 std::optional<std::string> OutcomeOf(const std::string& command,
                                      std::int64_t utime,
                                      const event_t& event) {
   const std::string sample = "sample " + std::to_string(event.sample_id);
-  if (command == "capture" && event.kind == "accepted") {
-    return sample + " taken" + (event.reason.empty() ? "" : ": " + event.reason);
-  }
+  const bool is_captured = event.kind == "accepted" && event.reason.rfind("by command", 0) == 0;
+  if (command == "capture" && is_captured) return sample + " taken " + event.reason;
   if (command == "finish" && event.kind == "finished") return "finished";
   if (event.utime != utime) return {};
   if (event.kind == "discarded") return sample + " discarded";
@@ -75,8 +77,13 @@ void SendAndTellOutcome(const CommandArgs& args, const Rig& rig, Bus* bus) {
     events.push_back(m);
   });
   const std::int64_t utime = Send(args, rig, bus);
+  Clock::time_point next_send = Clock::now() + kSayFinishAgain;
   std::string last_reason;
   for (const Clock::time_point end = Clock::now() + kPatience; Clock::now() < end;) {
+    if (args.command == "finish" && Clock::now() >= next_send) {
+      Send(args, rig, bus);
+      next_send += kSayFinishAgain;
+    }
     bus->HandleOnce(std::chrono::milliseconds(100));
     for (const event_t& event : events) {
       if (const auto outcome = OutcomeOf(args.command, utime, event)) {
@@ -88,6 +95,10 @@ void SendAndTellOutcome(const CommandArgs& args, const Rig& rig, Bus* bus) {
     events.clear();
   }
   if (!samples) throw std::runtime_error(kNoAnswer);
+  if (args.command == "finish") {
+    std::puts("sent; the detectors are still at work on earlier frames (--wait waits for them)");
+    return;
+  }
   if (args.command != "capture")
     throw std::runtime_error("sent, but nothing is known to have come of it");
   throw std::runtime_error(
@@ -117,7 +128,7 @@ void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
     }
     if (samples.is_finished == 0 && Clock::now() >= next_send) {
       Send(args, rig, bus);
-      next_send = Clock::now() + std::chrono::seconds(1);
+      next_send = Clock::now() + kSayFinishAgain;
     }
     bus->HandleOnce(std::chrono::milliseconds(100));
   }

@@ -178,6 +178,11 @@ TEST_F(SampleCollectorNodeTest, CaptureTakesASinglePair) {
   test::Send(bus_.get(), rig_.channels.camera_board, frames[1].camera);  // closes the pair
   ASSERT_THAT(node_->samples(), SizeIs(1));
   EXPECT_EQ(node_->samples()[0].num_frames, 1);
+  EXPECT_EQ(last_event().kind, "accepted");
+  EXPECT_EQ(last_event().reason, "by command; its sweep or image did not arrive: no scene");
+  ShowStop(1, {0, 1, 2});  // by itself
+  EXPECT_EQ(last_event().kind, "accepted");
+  EXPECT_EQ(last_event().reason, "");
 }
 
 TEST_F(SampleCollectorNodeTest, KeepsTheSweepAndTheImageOfTheSamplesFirstFrame) {

@@ -1,8 +1,11 @@
 #include "calibrate/advice.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
+#include <vector>
 
+#include "core/board/camera_board_fault.hpp"
+#include "core/board/lidar_board_miss.hpp"
 #include "core/format.hpp"
 
 namespace voqcal {
@@ -11,56 +14,65 @@ namespace {
 /// A reason that is none of a bad view now and then, if nearly all have it.
 constexpr double kNearlyAll = 0.8;
 
-struct Advice {
-  const char* module;
-  const char* reason;  ///< As the module counts it, or how that begins.
-  const char* text;
-};
+const char* TextOn(CameraBoardFault fault) {
+  switch (fault) {
+    case CameraBoardFault::kNoBoard:
+      return "do the images show the board? Then check board.pattern, board.num_corners_x and "
+             "num_corners_y";
+    case CameraBoardFault::kPartlyHidden:
+      return "check board.num_corners_x and num_corners_y: the inner corners, along width_m and "
+             "height_m";
+    case CameraBoardFault::kNoPose:
+      return "check camera.lens_model, fx_px, fy_px, cx_px, cy_px and distortion";
+    case CameraBoardFault::kPoorFit:
+      return "check camera.lens_model, fx_px, fy_px, cx_px, cy_px and distortion; is the board "
+             "flat?";
+    case CameraBoardFault::kBlurred:
+      return "focus the lens, shorten the exposure, and let the board rest at each place";
+    case CameraBoardFault::kGlare:
+      return "lower the exposure, or turn the board from the light";
+    case CameraBoardFault::kCutOff:
+      return "hold the board wholly within the image";
+    case CameraBoardFault::kTooSmall:
+    case CameraBoardFault::kAmbiguous:
+      return "";  // warnings of boards that were found
+  }
+  return "";
+}
 
-constexpr std::array<Advice, 17> kAdvice = {{
-    {"camera_board_detector",
-     "no board",
-     "do the images show the board? Then check board.pattern, board.num_corners_x and "
-     "num_corners_y"},
-    {"camera_board_detector",
-     "partly hidden",
-     "check board.num_corners_x and num_corners_y: the inner corners, along width_m and height_m"},
-    {"camera_board_detector",
-     "no pose",
-     "check camera.lens_model, fx_px, fy_px, cx_px, cy_px and distortion"},
-    {"camera_board_detector",
-     "poor fit",
-     "check camera.lens_model, fx_px, fy_px, cx_px, cy_px and distortion; is the board flat?"},
-    {"camera_board_detector",
-     "blurred",
-     "focus the lens, shorten the exposure, and let the board rest at each place"},
-    {"camera_board_detector", "glare", "lower the exposure, or turn the board from the light"},
-    {"camera_board_detector", "cut off", "hold the board wholly within the image"},
-    {"camera_board_detector", "image of ", "check camera.width_px and height_px"},
-    {"lidar_board_detector",
-     "too few points",
-     "check lidar_board_detector.min_range_m and max_range_m: nearly no return lies between"},
-    {"lidar_board_detector",
-     "no plane of the board's size",
-     "check board.width_m and height_m; hold the board nearer, away from walls and people"},
-    {"lidar_board_detector", "size mismatch", "check board.width_m and height_m"},
-    {"lidar_board_detector",
-     "seen at too flat an angle",
-     "turn the board's face more towards the lidar"},
-    {"lidar_board_detector",
-     "outline open",
-     "hold the board where the lidar sees all of it; check board.width_m and height_m"},
-    {"lidar_board_detector",
-     "too few beams tell its outline",
-     "hold the board nearer, as a diamond"},
-    {"lidar_board_detector",
-     "board bent",
-     "flatten the board, or check lidar_board_detector.max_bend_m"},
-    {"sample_collector",
-     "no camera frame at that time",
-     "do both sensors take their time from one clock?"},
-    {"sample_collector", "board is moving", "let the board rest a second at each place"},
-}};
+const char* TextOn(LidarBoardMiss miss) {
+  switch (miss) {
+    case LidarBoardMiss::kTooFewPoints:
+      return "check lidar_board_detector.min_range_m and max_range_m: nearly no return lies "
+             "between";
+    case LidarBoardMiss::kNoPlane:
+      return "check board.width_m and height_m; hold the board nearer, away from walls and people";
+    case LidarBoardMiss::kSizeMismatch:
+      return "check board.width_m and height_m";
+    case LidarBoardMiss::kFlat:
+      return "turn the board's face more towards the lidar";
+    case LidarBoardMiss::kCutOff:
+    case LidarBoardMiss::kHidden:
+      return "hold the board where the lidar sees all of it; check board.width_m and height_m";
+    case LidarBoardMiss::kLoose:
+      return "hold the board nearer, as a diamond";
+    case LidarBoardMiss::kBent:
+      return "flatten the board, or check lidar_board_detector.max_bend_m";
+    case LidarBoardMiss::kAmbiguous:
+      return "take away what looks like the board: the same size, at rest";
+  }
+  return "";
+}
+
+/// @tparam Fault  kAmbiguous is its last.
+template <typename Fault>
+std::string AdviceOnCounted(const std::string& reason) {
+  for (int i = 0; i <= static_cast<int>(Fault::kAmbiguous); ++i) {
+    const auto fault = static_cast<Fault>(i);
+    if (ToString(fault) == reason) return TextOn(fault);
+  }
+  return {};
+}
 
 bool BeginsWith(const std::string& text, const std::string& beginning) {
   return text.compare(0, beginning.size(), beginning) == 0;
@@ -69,28 +81,58 @@ bool BeginsWith(const std::string& text, const std::string& beginning) {
 // "boards: blurred" warns of boards that were found.
 bool IsOfAFrame(const std::string& what) { return !BeginsWith(what, "boards: "); }
 
+/// Reasons of one module that have one advice.
+struct Failures {
+  std::string advice;
+  std::string reasons;  ///< "no board" in quotation marks, with commas between.
+  std::int64_t num_times = 0;
+};
+
+std::vector<Failures> FailuresOf(const Module& module) {
+  std::vector<Failures> all;
+  for (const auto& [what, count] : module.counters()) {
+    const std::string advice = AdviceOn(module.Name(), what);
+    if (advice.empty()) continue;
+    auto same = std::find_if(
+        all.begin(), all.end(), [&advice](const Failures& each) { return each.advice == advice; });
+    if (same == all.end()) same = all.insert(all.end(), {advice, "", 0});
+    same->reasons += (same->reasons.empty() ? "\"" : ", \"") + what + "\"";
+    same->num_times += count;
+  }
+  return all;
+}
+
 }  // namespace
+
+std::string AdviceOn(const std::string& module, const std::string& reason) {
+  if (module == "camera_board_detector") {
+    if (BeginsWith(reason, "image of ")) return "check camera.width_px and height_px";
+    return AdviceOnCounted<CameraBoardFault>(reason);
+  }
+  if (module == "lidar_board_detector") return AdviceOnCounted<LidarBoardMiss>(reason);
+  if (module == "sample_collector") {
+    if (reason == "no camera frame at that time") {
+      return "do both sensors take their time from one clock?";
+    }
+    if (reason == "board is moving") return "let the board rest a second at each place";
+  }
+  return {};
+}
 
 std::string FailureAdvice(const OfflineRun& run) {
   std::string lines;
   for (const Module* module : run.modules()) {
     std::int64_t num_all = 0;
     for (const auto& [what, count] : module->counters()) num_all += IsOfAFrame(what) ? count : 0;
-    for (const Advice& advice : kAdvice) {
-      if (module->Name() != advice.module) continue;
-      std::int64_t num_so = 0;
-      for (const auto& [what, count] : module->counters()) {
-        num_so += BeginsWith(what, advice.reason) ? count : 0;
-      }
-      if (num_so == 0 || static_cast<double>(num_so) < kNearlyAll * static_cast<double>(num_all)) {
-        continue;
-      }
-      lines += Format("\n%s: \"%s\" %lld times of %lld: ",
-                      advice.module,
-                      advice.reason,
-                      static_cast<long long>(num_so),
-                      static_cast<long long>(num_all)) +
-               advice.text;
+    for (const Failures& failures : FailuresOf(*module)) {
+      const auto num_times = static_cast<double>(failures.num_times);
+      if (num_times < kNearlyAll * static_cast<double>(num_all)) continue;
+      lines += Format("\n%s: %s %lld times of %lld: %s",
+                      module->Name().c_str(),
+                      failures.reasons.c_str(),
+                      static_cast<long long>(failures.num_times),
+                      static_cast<long long>(num_all),
+                      failures.advice.c_str());
     }
   }
   return lines;

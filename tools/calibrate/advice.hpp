@@ -6,9 +6,12 @@
 
 namespace voqcal {
 
+/// What is likely wrong, and which key of the rig file to check, where nearly every frame of a
+/// module counts as `reason`; empty if there is nothing to say of it.
+std::string AdviceOn(const std::string& module, const std::string& reason);
+
 /// Where nearly every frame of a sensor, or every pair of frames, failed for one and the same
-/// reason: what is most likely wrong and which key of the rig file to check, a line each. Empty if
-/// nothing failed so.
+/// reason: the advice on it, a line each. Empty if nothing failed so.
 std::string FailureAdvice(const OfflineRun& run);
 
 }  // namespace voqcal

@@ -51,6 +51,16 @@ class BadInput : public ::testing::Test {
     return Path("raw.lcm");
   }
 
+  /// A session of cam_lidar_calibration with one pose, of which nothing is read.
+  std::string AcfrSession() const {
+    for (const char* folder : {"data/pcd", "data/images"}) {
+      std::filesystem::create_directories(Path(folder));
+    }
+    folder_.Write("data/pcd/pose1_full.pcd", "");
+    folder_.Write("data/images/pose1.png", "");
+    return Path("data");
+  }
+
   /// Runs a program that must refuse: one line that begins with its name and matches `line`, and
   /// one for each advice.
   template <typename Matcher>
@@ -88,7 +98,7 @@ TEST_F(BadInput, MissingFiles) {
   const std::string log = WriteLog(1);
   ExpectRefused({test::Program("evaluate"), "--rig", rig_, "--log", log, "--extrinsic", missing},
                 HasSubstr(missing));
-  ExpectRefused({test::Program("import_acfr"), missing, "--rig", rig_, "--out", Path("out")},
+  ExpectRefused({test::Program("import_acfr"), missing, "--rig", rig_, "--out", Path("new/out")},
                 HasSubstr(missing));
   ExpectRefused({test::Program("compare"), missing, "--truth-of", rig_}, HasSubstr(missing));
   rig_ = missing;
@@ -238,7 +248,7 @@ TEST_F(BadInput, OutputThatCannotBeWrittenIsNamedWithTheCause) {
     const std::vector<std::string> args =
         program == "calibrate"
             ? std::vector<std::string>{"--rig", rig_, "--log", log, "--out", "/proc/out"}
-            : std::vector<std::string>{Path("session"), "--rig", rig_, "--out", "/proc/out"};
+            : std::vector<std::string>{AcfrSession(), "--rig", rig_, "--out", "/proc/out"};
     std::vector<std::string> command = {test::Program(program)};
     command.insert(command.end(), args.begin(), args.end());
     ExpectRefused(command, HasSubstr(program + ": /proc/out: cannot be written: "));
@@ -256,7 +266,7 @@ TEST_F(BadInput, StandardOutputOnAFullDisk) {
 TEST_F(BadInput, AFileThatIsThereIsOverwrittenOnlyIfForced) {
   const std::string there = folder_.Write("there", "precious");
   const std::string is_there = there + ": is there already (--force overwrites it)";
-  ExpectRefused({test::Program("import_acfr"), Path("data"), "--rig", rig_, "--out", there},
+  ExpectRefused({test::Program("import_acfr"), AcfrSession(), "--rig", rig_, "--out", there},
                 HasSubstr(is_there));
   std::filesystem::create_directory(Path("result"));
   folder_.Write("result/extrinsic.yaml",

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <system_error>
@@ -72,10 +74,22 @@ image_t ImageMessage(const FrameFile& file, std::int64_t seq) {
   }
 }
 
-void WriteFrames(const ImportArgs& args, const Rig& rig, const std::filesystem::path& log) {
-  FrameFolder clouds(FolderOptions(args.session / "pcd", "_full.pcd", args.rate_hz), {".pcd"});
-  FrameFolder images(FolderOptions(args.session / "images", "", args.rate_hz), {".png", ".jpg"});
-  Progress progress("importing " + args.session.filename().string());
+struct Session {
+  /// @throws std::runtime_error naming the folder that is missing or empty.
+  explicit Session(const ImportArgs& args)
+      : name(args.session.filename().string()),
+        clouds(FolderOptions(args.session / "pcd", "_full.pcd", args.rate_hz), {".pcd"}),
+        images(FolderOptions(args.session / "images", "", args.rate_hz), {".png", ".jpg"}) {}
+
+  std::string name;
+  FrameFolder clouds;
+  FrameFolder images;
+};
+
+void WriteFrames(Session session, const Rig& rig, const std::filesystem::path& log) {
+  FrameFolder& clouds = session.clouds;
+  FrameFolder& images = session.images;
+  Progress progress("importing " + session.name);
   EventWriter events(log);
   std::size_t num_clouds = 0;
   std::size_t num_images = 0;
@@ -104,10 +118,11 @@ void WriteFrames(const ImportArgs& args, const Rig& rig, const std::filesystem::
 
 void Import(const ImportArgs& args) {
   const Rig rig = LoadRig(args.rig);
+  Session session(args);
   args.out.Prepare();
   const ScratchFolder scratch(args.out.path);
   const std::filesystem::path log = scratch.path() / "import.lcm";
-  WriteFrames(args, rig, log);
+  WriteFrames(std::move(session), rig, log);
   std::error_code error;
   std::filesystem::rename(log, args.out.path, error);
   if (error)

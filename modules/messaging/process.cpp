@@ -63,11 +63,15 @@ void LogToStderr(const std::string& program, bool is_verbose) {
 }
 
 void PrintError(const std::string& program, const std::string& text) {
+  bool is_told = false;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-    if (!line.empty()) std::cerr << program << ": " << line << '\n';
+    if (line.empty()) continue;
+    std::cerr << program << ": " << line << '\n';
+    is_told = true;
   }
+  if (!is_told) std::cerr << program << ": failed, without a reason\n";
 }
 
 }  // namespace voqcal

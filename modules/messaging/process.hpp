@@ -36,7 +36,8 @@ int RunProcess(int argc,
 /// Sends spdlog to stderr, level info (debug if `is_verbose`), each line naming `program`.
 void LogToStderr(const std::string& program, bool is_verbose);
 
-/// Writes an error to stderr, each of its lines behind the program's name.
+/// Writes an error to stderr, each of its lines behind the program's name; one line also if it is
+/// empty.
 void PrintError(const std::string& program, const std::string& text);
 
 }  // namespace voqcal

@@ -61,6 +61,12 @@ TEST(RunProcess, AnswersAnExceptionWithStatus1AndItsNameOnEachLine) {
   EXPECT_EQ(run.err, "detector: a.yaml:3: board\ndetector: a.yaml:5: camera\n");
 }
 
+TEST(RunProcess, SaysThatItFailedEvenWithoutAReason) {
+  const Outcome run = RunWith({"--rig", "a.yaml"}, " \n");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err, "detector: failed, without a reason\n");
+}
+
 TEST(RunProcess, AnswersWrongFlagsWithStatus2) {
   for (const auto& flags : std::vector<std::vector<const char*>>{
            {}, {"--rig"}, {"--rig", "a.yaml", "--speed", "9"}, {"--rig", "a.yaml", "b.yaml"}}) {

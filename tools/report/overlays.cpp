@@ -175,8 +175,8 @@ cv::Mat DrawBoard(const PosePicture& scene,
   cv::Mat picture = Cut(scene.image, view);
   DrawPoints(scene.sweep_lidar_m, camera, T_camera_lidar, view, 2.2, &picture);
   const auto by_lidar_px = OutlinePx(scene.sample.lidar.pose, T_camera_lidar, camera);
-  DrawOutline(by_lidar_px, view, magenta, false, 3, &picture);
-  DrawOutline(by_camera_px, view, green, true, 1, &picture);  // thinner and above: both are seen
+  DrawOutline(by_lidar_px, view, magenta, false, 5, &picture);
+  DrawOutline(by_camera_px, view, green, true, 2, &picture);  // thinner and above: both are seen
   return picture;
 }
 

@@ -13,7 +13,7 @@ void RequireFewPixels(std::int64_t width_px, std::int64_t height_px, std::int64_
 
 cv::Mat NewImage(std::int64_t width_px, std::int64_t height_px, int type) {
   try {
-    return {static_cast<int>(height_px), static_cast<int>(width_px), type};
+    return cv::Mat(static_cast<int>(height_px), static_cast<int>(width_px), type);
   } catch (const cv::Exception&) {
     throw std::runtime_error("no memory for it");
   }

@@ -54,6 +54,7 @@ const char* TextOn(LidarBoardMiss miss) {
     case LidarBoardMiss::kCutOff:
     case LidarBoardMiss::kHidden:
       return "hold the board where the lidar sees all of it; check board.width_m and height_m";
+    case LidarBoardMiss::kGap:
     case LidarBoardMiss::kLoose:
       return "hold the board nearer, as a diamond";
     case LidarBoardMiss::kBent:

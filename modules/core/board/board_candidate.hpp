@@ -13,7 +13,7 @@
 namespace voqcal {
 
 /// Measures the board at one planar patch, or says why the patch is not the board: kNoPlane,
-/// kSizeMismatch, kFlat, kCutOff, kHidden, kLoose or kBent.
+/// kSizeMismatch, kFlat, kCutOff, kGap, kHidden, kLoose or kBent.
 ///
 /// @param beams  All returns of the sweep, also those behind the patch: they show where it ends.
 Expected<LidarBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,

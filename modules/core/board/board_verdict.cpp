@@ -80,12 +80,14 @@ std::optional<NoLidarBoard> OpenSide(const Measurement& m,
   constexpr double kMaxShortM = 0.05;   // hits of a closed outline come so near its edge...
   constexpr double kMaxSpacings = 1.5;  // ...or as near as the beams are to each other
   const double max_short_m = std::max(kMaxShortM, kMaxSpacings * SpacingM(m));
+  const std::array<bool, 4> is_covered = CoveredPast(edges, m, beams);
   const std::optional<std::size_t> edge =
-      OpenEdge(edges, CoveredPast(edges, m, beams), agreement, max_short_m, slack);
+      OpenEdge(edges, is_covered, agreement, max_short_m, slack);
   if (!edge) return {};
+  const LidarBoardMiss unhidden =
+      is_covered[*edge] ? LidarBoardMiss::kGap : LidarBoardMiss::kCutOff;
   const bool is_hidden = IsHidden(m.view.BlockedM(), m.model, m.outline.pose, *edge);
-  return NoLidarBoard{is_hidden ? LidarBoardMiss::kHidden : LidarBoardMiss::kCutOff,
-                      SideOf(m, *edge)};
+  return NoLidarBoard{is_hidden ? LidarBoardMiss::kHidden : unhidden, SideOf(m, *edge)};
 }
 
 std::optional<NoLidarBoard> UnprovenSide(const Measurement& m) {

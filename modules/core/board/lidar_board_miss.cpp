@@ -16,6 +16,8 @@ std::string ToString(LidarBoardMiss miss) {
       return "seen at too flat an angle";
     case LidarBoardMiss::kCutOff:
       return "outline open: the field of view ends";
+    case LidarBoardMiss::kGap:
+      return "outline open: the scan leaves a gap";
     case LidarBoardMiss::kHidden:
       return "outline open: something stands before it";
     case LidarBoardMiss::kLoose:

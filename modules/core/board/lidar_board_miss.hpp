@@ -11,6 +11,7 @@ enum class LidarBoardMiss {
   kSizeMismatch,  ///< Planar patches, but none whose outline fits the board's size.
   kFlat,          ///< A patch fits, but its plane is seen at too flat an angle.
   kCutOff,        ///< A patch fits, but past one side there are no beams: the field of view ends.
+  kGap,           ///< A patch fits, but at one side this sweep left too much unseen.
   kHidden,        ///< A patch fits, but something stands before one side of it.
   kLoose,         ///< A patch fits, but so few beams tell its outline that it could lie elsewhere.
   kBent,          ///< It has the board's outline, but is not flat.

@@ -115,12 +115,14 @@ std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
                                     double slack) {
   constexpr double kMinCovered = 0.8;
   std::optional<std::size_t> open;
+  bool is_outlined = true;  // from both sides, all around: gaps within are the sensor's
   for (std::size_t i = 0; i < 4; ++i) {
-    const bool is_up_to_it = is_covered[i] && edges[i].reach_m > -slack * max_short_m;
-    if (IsClosed(edges[i]) || is_up_to_it) continue;
+    const double short_m = -edges[i].reach_m / slack;
+    is_outlined = is_outlined && IsClosed(edges[i]) && short_m < max_short_m / 2;
+    if (IsClosed(edges[i]) || (is_covered[i] && short_m < max_short_m)) continue;
     if (!open || edges[i].reach_m < edges[*open].reach_m) open = i;
   }
-  if (open || agreement.covered >= kMinCovered / slack) return open;
+  if (open || is_outlined || agreement.covered >= kMinCovered / slack) return open;
   const auto& half = agreement.covered_half;
   return static_cast<std::size_t>(std::min_element(half.begin(), half.end()) - half.begin());
 }

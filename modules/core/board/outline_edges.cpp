@@ -44,14 +44,19 @@ std::array<Side, 4> Sides(const OutlineModel& model) {
           Side{OutwardOf(3), {0, -1}, y, x, blur_m.x(), grow_m(0, 1)}};
 }
 
-/// How far from its edge a beam still says something of it.
+/// How far from an edge a beam still says something of it.
 double WindowM(const OutlineModel& model) { return std::min(model.width_m, model.height_m) / 4; }
+
+/// How far outside a miss still does, as scan lines may be so far apart; a hit there may be of
+/// something else.
+double FarthestMissM(const OutlineModel& model) { return 2 * WindowM(model); }
 
 std::array<std::vector<NearBeam>, 4> BeamsNear(const std::vector<OutlineBeam>& beams,
                                                const OutlineModel& model,
                                                const RectanglePose& pose,
                                                const std::array<Side, 4>& sides) {
   const double window_m = WindowM(model);
+  const double farthest_miss_m = FarthestMissM(model);
   // Near a corner the neighbouring edge decides too.
   const double corner_m = std::max(3 * model.blur_m, window_m / 4);
   const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
@@ -60,7 +65,7 @@ std::array<std::vector<NearBeam>, 4> BeamsNear(const std::vector<OutlineBeam>& b
     const Eigen::Vector2d q_m = T_rectangle_plane * beam.position_m;
     for (std::size_t i = 0; i < 4; ++i) {
       const double outside_m = sides[i].outward.dot(q_m) - sides[i].half_depth_m;
-      if (std::abs(outside_m) > window_m) continue;
+      if (outside_m < -window_m || outside_m > (beam.is_hit ? window_m : farthest_miss_m)) continue;
       const double along_m = sides[i].along.dot(q_m);
       if (std::abs(along_m) > sides[i].half_length_m - corner_m) continue;
       near[i].push_back({along_m, outside_m, beam.is_hit});
@@ -88,6 +93,8 @@ void FitLine(const std::vector<NearBeam>& near,
   constexpr int kNumIterations = 20;
   const double keep = 1.0 - model.outlier_share;
   Eigen::Vector2d line = Eigen::Vector2d::Zero();
+  double largest_step_m = window_m / 4;
+  double last_step_m = 0.0;
   for (int i = 0; i < kNumIterations; ++i) {
     // Weak pull (window: 1 sigma) so that an edge seen at one place only keeps the rectangle's
     // slope.
@@ -103,7 +110,10 @@ void FitLine(const std::vector<NearBeam>& near,
       H += J * J.transpose() / (p_hit * (1.0 - p_hit));
     }
     Eigen::Vector2d step = H.ldlt().solve(g);
-    step[0] = std::clamp(step[0], -window_m / 4, window_m / 4);
+    // Between two scan lines there is hardly any curvature: steps would go to and fro.
+    if (step[0] * last_step_m < 0) largest_step_m /= 2;
+    step[0] = std::clamp(step[0], -largest_step_m, largest_step_m);
+    last_step_m = step[0];
     step[1] = std::clamp(step[1], -0.1, 0.1);
     line += step;
     edge->offset_sigma_m = std::sqrt(H.inverse()(0, 0));

@@ -1,6 +1,7 @@
 #include "core/board/planar_patches.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -40,7 +41,7 @@ std::vector<CellSurface> FitSurfaces(const VoxelGrid& grid, const PatchSearchOpt
   std::vector<CellSurface> surfaces(grid.NumCells());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     PointMoments around;
-    grid.ForEachNear(i, 1, [&](std::size_t near) { around.Add(grid.Moments(near)); });
+    grid.ForEachTouching(i, [&](std::size_t near) { around.Add(grid.Moments(near)); });
     if (around.num < kMinPoints || IsBulky(around, max_thickness_m)) continue;
     surfaces[i].plane = FitPlane(around);
     surfaces[i].is_planar = surfaces[i].plane.spread_m[0] < max_thickness_m &&
@@ -64,36 +65,43 @@ std::vector<std::size_t> SeedOrder(const std::vector<CellSurface>& surfaces) {
   return seeds;
 }
 
-/// All cells that continue the plane of `members` in steps of up to `reach` cells: far away, scan
-/// lines are more than a cell apart.
-void Grow(std::int32_t patch,
-          int reach,
-          const VoxelGrid& grid,
-          const PatchSearchOptions& options,
-          std::vector<CellSurface>* surfaces,
-          std::vector<std::size_t>* members) {
+/// Whether a cell that is in no patch yet continues `plane`.
+bool Continues(const PlaneFit& plane,
+               std::size_t cell,
+               const VoxelGrid& grid,
+               const PatchSearchOptions& options,
+               const std::vector<CellSurface>& surfaces) {
   constexpr double kMinNormalCosine = 0.9;  // 26 degrees: surfaces of small cells are rough
-  PlaneFit plane = (*surfaces)[members->front()].plane;
+  const CellSurface& surface = surfaces[cell];
+  if (surface.patch != kNone) return false;
+  if (std::abs(plane.DistanceM(grid.MeanM(cell))) > options.band_m) return false;
+  return !surface.is_planar || std::abs(surface.plane.normal.dot(plane.normal)) >= kMinNormalCosine;
+}
+
+/// All cells that continue the plane of `seed` from one to the next.
+std::vector<std::size_t> Grow(std::size_t seed,
+                              std::int32_t patch,
+                              const VoxelGrid& grid,
+                              const PatchSearchOptions& options,
+                              std::vector<CellSurface>* surfaces) {
+  PlaneFit plane = (*surfaces)[seed].plane;
   PointMoments moments;
   std::size_t num_at_fit = 27;  // the surface is about as good as this many cells
-  for (std::size_t next = 0; next < members->size(); ++next) {
-    moments.Add(grid.Moments((*members)[next]));
+  std::vector<std::size_t> members = {seed};
+  (*surfaces)[seed].patch = patch;
+  for (std::size_t next = 0; next < members.size(); ++next) {
+    moments.Add(grid.Moments(members[next]));
     if (next >= 2 * num_at_fit) {
       plane = FitPlane(moments);
       num_at_fit = next;
     }
-    grid.ForEachNear((*members)[next], reach, [&](std::size_t i) {
-      CellSurface& surface = (*surfaces)[i];
-      if (surface.patch != kNone) return;
-      if (std::abs(plane.DistanceM(grid.MeanM(i))) > options.band_m) return;
-      if (surface.is_planar &&
-          std::abs(surface.plane.normal.dot(plane.normal)) < kMinNormalCosine) {
-        return;
-      }
-      surface.patch = patch;
-      members->push_back(i);
+    grid.ForEachTouching(members[next], [&](std::size_t i) {
+      if (!Continues(plane, i, grid, options, *surfaces)) return;
+      (*surfaces)[i].patch = patch;
+      members.push_back(i);
     });
   }
+  return members;
 }
 
 PlanarPatch Describe(const std::vector<std::size_t>& members, const VoxelGrid& grid) {
@@ -115,9 +123,10 @@ double Unlikeness(const PlanarPatch& patch, const PatchSearchOptions& options) {
   return std::max(shorter, longer);
 }
 
+/// A wall or a floor. A board with a pole or a person in its plane is long, but no wider.
 bool IsTooLarge(const PlanarPatch& patch, const PatchSearchOptions& options) {
   return patch.plane.spread_m[1] > 2 * options.spread_m[0] ||
-         patch.plane.spread_m[2] > 2 * options.spread_m[1];
+         patch.plane.spread_m[2] > 3 * options.spread_m[1];
 }
 
 /// The members around their common middle: a pole, a leg or a shelf in the plane may hang on to a
@@ -145,6 +154,28 @@ std::vector<std::size_t> Compact(const std::vector<std::size_t>& members,
   return compact;
 }
 
+/// The members, and what continues their plane across gaps, as far as a board may reach: scan lines
+/// may be more than a cell apart, and some sensors leave parts of it out.
+std::vector<std::size_t> AcrossGaps(const std::vector<std::size_t>& members,
+                                    const VoxelGrid& grid,
+                                    const PatchSearchOptions& options,
+                                    const std::vector<CellSurface>& surfaces) {
+  // Little by little: a small piece's plane is not known far from it.
+  constexpr std::array<double, 3> kShares = {0.5, 0.75, 1.0};
+  std::vector<std::size_t> all = members;
+  std::vector<std::size_t> near;
+  for (const double share : kShares) {
+    const PlanarPatch piece = Describe(all, grid);
+    near.clear();
+    grid.AppendWithin(piece.middle_m, share * options.max_radius_m, &near);
+    all = members;
+    for (const std::size_t i : near) {
+      if (Continues(piece.plane, i, grid, options, surfaces)) all.push_back(i);
+    }
+  }
+  return all;
+}
+
 bool HasBoardSize(const PlanarPatch& patch, const PatchSearchOptions& options) {
   return patch.num_points >= options.min_points && Unlikeness(patch, options) <= std::log(2.0);
 }
@@ -156,20 +187,16 @@ std::vector<PlanarPatch> FindPlanarPatches(const std::vector<Eigen::Vector3d>& p
   const VoxelGrid grid(points_m, options.voxel_m);
   std::vector<CellSurface> surfaces = FitSurfaces(grid, options);
   std::vector<PlanarPatch> patches;
-  std::vector<std::size_t> members;
   std::int32_t num_grown = 0;
   for (const std::size_t seed : SeedOrder(surfaces)) {
     if (surfaces[seed].patch != kNone) continue;
     const std::int32_t grown = num_grown++;
-    surfaces[seed].patch = grown;
-    members.assign(1, seed);
-    Grow(grown, 1, grid, options, &surfaces, &members);
+    const std::vector<std::size_t> members = Grow(seed, grown, grid, options, &surfaces);
     if (IsTooLarge(Describe(members, grid), options)) continue;
-    const std::vector<std::size_t> near = Compact(members, grid, options);
-    // What a gap divides may be one board seen by few scan lines, or a board and what stands beside
-    // it: the larger of the two that has the board's size.
-    Grow(grown, 2, grid, options, &surfaces, &members);
-    for (const auto& piece : {Compact(members, grid, options), near}) {
+    // What a gap divides may be one board seen in pieces, or a board and what stands beside it: the
+    // larger of the two that has the board's size.
+    for (const auto& whole : {AcrossGaps(members, grid, options, surfaces), members}) {
+      const std::vector<std::size_t> piece = Compact(whole, grid, options);
       const PlanarPatch patch = Describe(piece, grid);
       if (!HasBoardSize(patch, options)) continue;
       patches.push_back(patch);

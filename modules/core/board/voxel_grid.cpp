@@ -1,6 +1,7 @@
 #include "core/board/voxel_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace voqcal {
@@ -63,7 +64,8 @@ class KeyTable {
 
 }  // namespace
 
-VoxelGrid::VoxelGrid(const std::vector<Eigen::Vector3d>& points_m, double voxel_m) {
+VoxelGrid::VoxelGrid(const std::vector<Eigen::Vector3d>& points_m, double voxel_m)
+    : voxel_m_(voxel_m) {
   KeyTable table;
   std::vector<PointMoments> moments;
   for (const Eigen::Vector3d& point_m : points_m) {
@@ -76,71 +78,74 @@ VoxelGrid::VoxelGrid(const std::vector<Eigen::Vector3d>& points_m, double voxel_
   for (std::uint32_t i = 0; i < moments.size(); ++i) order.emplace_back(table.Keys()[i], i);
   std::sort(order.begin(), order.end());
 
-  places_.reserve(order.size());
+  heights_.reserve(order.size());
   moments_.reserve(order.size());
   means_m_.reserve(order.size());
-  std::vector<std::uint64_t> column_keys;
   for (const auto& [key, i] : order) {
-    if (column_keys.empty() || column_keys.back() != key >> kBits) {
-      column_keys.push_back(key >> kBits);
-      columns_.emplace_back().begin = places_.size();
+    if (columns_.empty() || columns_.back().key != key >> kBits) {
+      columns_.push_back({key >> kBits, heights_.size(), heights_.size()});
     }
-    const auto column = static_cast<std::uint32_t>(columns_.size() - 1);
-    places_.push_back({column, static_cast<std::int32_t>(key & kAxisMask)});
+    heights_.push_back(static_cast<std::int32_t>(key & kAxisMask));
     moments_.push_back(moments[i]);
     means_m_.push_back(moments[i].MeanM());
-    columns_.back().end = places_.size();
+    columns_.back().end = heights_.size();
   }
-  LinkColumns(column_keys);
   ListTouching();
 }
 
-void VoxelGrid::LinkColumns(const std::vector<std::uint64_t>& keys) {
-  // Keys grow, so for each dx the first column that can be near moves on only.
-  for (int dx = -kReach; dx <= kReach; ++dx) {
-    std::size_t first = 0;
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      const std::int64_t row = static_cast<std::int64_t>(keys[i]) + dx * (std::int64_t{1} << kBits);
-      const auto dy_of = [&](std::size_t j) { return static_cast<std::int64_t>(keys[j]) - row; };
-      while (first < keys.size() && dy_of(first) < -kReach) ++first;
-      for (int dy = -kReach; dy <= kReach; ++dy) columns_[i].near[NearSlot(dx, dy)] = kNoColumn;
-      for (std::size_t j = first; j < keys.size() && dy_of(j) <= kReach; ++j) {
-        columns_[i].near[NearSlot(dx, static_cast<int>(dy_of(j)))] = static_cast<std::int32_t>(j);
-      }
-    }
-  }
-}
-
 void VoxelGrid::ListTouching() {
+  // Of cells of one column beside that at hand.
+  struct Run {
+    std::size_t first;
+    std::size_t end;
+  };
   touching_.reserve(16 * NumCells());
   touching_begin_.reserve(NumCells() + 1);
   touching_begin_.push_back(0);
+  std::array<std::size_t, 3> next{};  // the first column that can touch, for each step in x
   for (const Column& column : columns_) {
-    // Upwards in the column, the first cell that touches moves up too, in each column around.
-    struct Run {
-      std::size_t first;
-      std::size_t end;
-    };
     std::array<Run, 9> runs;
     std::size_t num_runs = 0;
-    for (int dx = -1; dx <= 1; ++dx) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        const std::int32_t near = column.near[NearSlot(dx, dy)];
-        if (near == kNoColumn) continue;
-        const Column& beside = columns_[static_cast<std::size_t>(near)];
-        runs[num_runs++] = {beside.begin, beside.end};
+    for (std::size_t dx = 0; dx < next.size(); ++dx) {
+      const std::uint64_t beside = column.key + (dx << kBits) - (std::uint64_t{1} << kBits);
+      while (next[dx] < columns_.size() && columns_[next[dx]].key + 1 < beside) ++next[dx];
+      for (std::size_t j = next[dx]; j < columns_.size() && columns_[j].key <= beside + 1; ++j) {
+        runs[num_runs++] = {columns_[j].begin, columns_[j].end};
       }
     }
+    // Upwards in the column, the first cell that touches moves up too, in each column beside.
     for (std::size_t at = column.begin; at < column.end; ++at) {
-      const std::int32_t z = places_[at].z;
       for (std::size_t k = 0; k < num_runs; ++k) {
         Run& run = runs[k];
-        while (run.first < run.end && places_[run.first].z < z - 1) ++run.first;
-        for (std::size_t i = run.first; i < run.end && places_[i].z <= z + 1; ++i) {
+        while (run.first < run.end && heights_[run.first] < heights_[at] - 1) ++run.first;
+        for (std::size_t i = run.first; i < run.end && heights_[i] <= heights_[at] + 1; ++i) {
           touching_.push_back(static_cast<std::uint32_t>(i));
         }
       }
       touching_begin_.push_back(touching_.size());
+    }
+  }
+}
+
+void VoxelGrid::AppendWithin(const Eigen::Vector3d& place_m,
+                             double radius_m,
+                             std::vector<std::size_t>* cells) const {
+  const auto column_at = [&](const Eigen::Vector3d& corner_m) {
+    return KeyOf(corner_m, 1.0 / voxel_m_) >> kBits;
+  };
+  const auto is_before = [](const Column& column, std::uint64_t key) { return column.key < key; };
+  const Eigen::Vector3d reach_m = Eigen::Vector3d::Constant(radius_m);
+  const std::uint64_t first = column_at(place_m - reach_m);
+  const std::uint64_t last = column_at(place_m + reach_m);
+  const std::uint64_t num_rows = (last >> kBits) - (first >> kBits) + 1;
+  const std::uint64_t row_end = last - ((num_rows - 1) << kBits);
+  for (std::uint64_t row = 0; row < num_rows; ++row) {
+    auto column =
+        std::lower_bound(columns_.begin(), columns_.end(), first + (row << kBits), is_before);
+    for (; column != columns_.end() && column->key <= row_end + (row << kBits); ++column) {
+      for (std::size_t i = column->begin; i < column->end; ++i) {
+        if ((means_m_[i] - place_m).squaredNorm() <= radius_m * radius_m) cells->push_back(i);
+      }
     }
   }
 }

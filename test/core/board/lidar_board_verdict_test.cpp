@@ -60,6 +60,33 @@ TEST(LidarBoardVerdict, EndOfTheFieldOfViewIsNamed) {
   EXPECT_EQ("outline open: the field of view ends on the left", VerdictOn(cut));
 }
 
+/// Without the beams that meet the plane at x = 2.3 m between two heights: petals of a rosette
+/// leave such gaps.
+PointCloud WithoutBand(const PointCloud& whole, float low_m, float high_m) {
+  PointCloud gappy = whole;
+  gappy.points.clear();
+  for (const LidarPoint& point : whole.points) {
+    const float height_m = point.position_m.z() / point.position_m.x() * 2.3F;
+    if (height_m < low_m || height_m > high_m) gappy.points.push_back(point);
+  }
+  return gappy;
+}
+
+TEST(LidarBoardVerdict, BoardIsOneOnBothSidesOfAGapOfTheScan) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  // 0.4 m of its 0.85 m are not seen, more than two of the cells that patches grow in.
+  EXPECT_EQ("found", VerdictOn(WithoutBand(SynthesizeLidarBoard(scene), -0.2F, 0.2F)));
+}
+
+TEST(LidarBoardVerdict, GapOfTheScanAtAnEdgeIsNamed) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  // The uppermost 0.2 m and whatever is above it; higher up the sensor sees the wall.
+  EXPECT_EQ("outline open: the scan leaves a gap at the top",
+            VerdictOn(WithoutBand(SynthesizeLidarBoard(scene), 0.225F, 0.85F)));
+}
+
 TEST(LidarBoardVerdict, SurfaceThatTheFieldOfViewCutsToTheBoardsHeightIsNone) {
   // A panel as wide as the board and much taller; the sensor sees its upper 0.8 m.
   SyntheticLidarBoardOptions scene = UprightBoard();

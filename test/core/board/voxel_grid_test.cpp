@@ -28,20 +28,36 @@ Eigen::Array3d CellOf(const VoxelGrid& grid, std::size_t cell) {
   return (grid.MeanM(cell).array() / kVoxelM).floor();
 }
 
-TEST(VoxelGrid, KnowsTheCellsWithinEachReach) {
+TEST(VoxelGrid, KnowsTheCellsThatTouch) {
   const VoxelGrid grid(Points(), kVoxelM);
   ASSERT_GT(grid.NumCells(), 300u);
-  for (const int reach : {1, 2}) {
-    for (std::size_t at = 0; at < grid.NumCells(); ++at) {
-      std::vector<std::size_t> expected;
-      for (std::size_t i = 0; i < grid.NumCells(); ++i) {
-        const Eigen::Array3d steps = (CellOf(grid, i) - CellOf(grid, at)).abs();
-        if ((steps <= reach).all()) expected.push_back(i);
-      }
-      std::vector<std::size_t> near;
-      grid.ForEachNear(at, reach, [&near](std::size_t i) { near.push_back(i); });
-      ASSERT_EQ(near, expected) << "cell " << at << " reach " << reach;
+  for (std::size_t at = 0; at < grid.NumCells(); ++at) {
+    std::vector<std::size_t> expected;
+    for (std::size_t i = 0; i < grid.NumCells(); ++i) {
+      const Eigen::Array3d steps = (CellOf(grid, i) - CellOf(grid, at)).abs();
+      if ((steps <= 1).all()) expected.push_back(i);
     }
+    std::vector<std::size_t> touching;
+    grid.ForEachTouching(at, [&touching](std::size_t i) { touching.push_back(i); });
+    ASSERT_EQ(touching, expected) << "cell " << at;
+  }
+}
+
+TEST(VoxelGrid, FindsTheCellsWithinARadius) {
+  const VoxelGrid grid(Points(), kVoxelM);
+  test::Random random(4);
+  for (int trial = 0; trial < 100; ++trial) {
+    // Also beside all points.
+    const Eigen::Vector3d place_m(
+        random.Uniform(-3, 3), random.Uniform(-3, 3), random.Uniform(-3, 4));
+    const double radius_m = random.Uniform(0.01, 2.0);
+    std::vector<std::size_t> expected;
+    for (std::size_t i = 0; i < grid.NumCells(); ++i) {
+      if ((grid.MeanM(i) - place_m).norm() <= radius_m) expected.push_back(i);
+    }
+    std::vector<std::size_t> within;
+    grid.AppendWithin(place_m, radius_m, &within);
+    ASSERT_EQ(within, expected) << place_m.transpose() << ", radius " << radius_m;
   }
 }
 

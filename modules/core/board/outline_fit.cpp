@@ -1,6 +1,7 @@
 #include "core/board/outline_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -102,20 +103,26 @@ double RoughScore(const std::vector<OutlineBeam>& beams,
   return score_m;
 }
 
-/// Angles over half a turn, the most promising first.
-std::vector<double> RankedAngles(const std::vector<OutlineBeam>& beams,
-                                 const OutlineModel& model,
-                                 const Eigen::Vector2d& centre_m) {
-  constexpr int kNumAngles = 12;  // 15 degrees apart: within reach of the wide blur
+/// Angles over half a turn, better than those beside them, the most promising first: from an angle
+/// beside a better one the fit would end at the same rectangle.
+std::vector<double> PromisingAngles(const std::vector<OutlineBeam>& beams,
+                                    const OutlineModel& model,
+                                    const Eigen::Vector2d& centre_m) {
+  constexpr std::size_t kNumAngles = 12;  // 15 degrees apart: within reach of the wide blur
+  std::array<double, kNumAngles> scores_m{};
+  const auto angle_rad = [](std::size_t i) { return kPi * static_cast<double>(i) / kNumAngles; };
+  for (std::size_t i = 0; i < kNumAngles; ++i) {
+    scores_m[i] = RoughScore(beams, model, {centre_m, angle_rad(i)}, model.blur_m);
+  }
   std::vector<std::pair<double, double>> ranked;
-  for (int i = 0; i < kNumAngles; ++i) {
-    const double angle_rad = kPi * i / kNumAngles;
-    const double score_m = RoughScore(beams, model, {centre_m, angle_rad}, model.blur_m);
-    ranked.emplace_back(-score_m, angle_rad);
+  for (std::size_t i = 0; i < kNumAngles; ++i) {
+    const double beside_m =
+        std::max(scores_m[(i + 1) % kNumAngles], scores_m[(i + kNumAngles - 1) % kNumAngles]);
+    if (scores_m[i] >= beside_m) ranked.emplace_back(-scores_m[i], angle_rad(i));
   }
   std::sort(ranked.begin(), ranked.end());
   std::vector<double> angles_rad;
-  for (const auto& [score_m, angle_rad] : ranked) angles_rad.push_back(angle_rad);
+  for (const auto& [score_m, angle] : ranked) angles_rad.push_back(angle);
   return angles_rad;
 }
 
@@ -140,9 +147,9 @@ OutlineFit SearchOutline(const std::vector<OutlineBeam>& beams,
   constexpr std::size_t kNumBeams = 250;
   const std::vector<OutlineBeam> few = Thinned(beams, kNumBeams);
   const OutlineModel wide = WithBlur(model, std::max(model.blur_m, SearchBlurM(model)));
-  const std::vector<double> angles_rad = RankedAngles(few, wide, centre_m);
+  const std::vector<double> angles_rad = PromisingAngles(few, wide, centre_m);
   OutlineFit best;
-  for (std::size_t i = 0; i < kNumTried; ++i) {
+  for (std::size_t i = 0; i < std::min(kNumTried, angles_rad.size()); ++i) {
     const OutlineFit fit =
         Refine(few, wide, StartAt(model, {centre_m, angles_rad[i]}), kNumFirstSteps);
     if (i == 0 || fit.log_likelihood > best.log_likelihood) best = fit;

@@ -161,7 +161,7 @@ std::vector<std::size_t> AcrossGaps(const std::vector<std::size_t>& members,
                                     const PatchSearchOptions& options,
                                     const std::vector<CellSurface>& surfaces) {
   // Little by little: a small piece's plane is not known far from it.
-  constexpr std::array<double, 3> kShares = {0.5, 0.75, 1.0};
+  constexpr std::array<double, 2> kShares = {0.6, 1.0};
   std::vector<std::size_t> all = members;
   std::vector<std::size_t> near;
   for (const double share : kShares) {

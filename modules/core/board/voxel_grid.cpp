@@ -130,20 +130,22 @@ void VoxelGrid::ListTouching() {
 void VoxelGrid::AppendWithin(const Eigen::Vector3d& place_m,
                              double radius_m,
                              std::vector<std::size_t>* cells) const {
-  const auto column_at = [&](const Eigen::Vector3d& corner_m) {
-    return KeyOf(corner_m, 1.0 / voxel_m_) >> kBits;
-  };
-  const auto is_before = [](const Column& column, std::uint64_t key) { return column.key < key; };
   const Eigen::Vector3d reach_m = Eigen::Vector3d::Constant(radius_m);
-  const std::uint64_t first = column_at(place_m - reach_m);
-  const std::uint64_t last = column_at(place_m + reach_m);
-  const std::uint64_t num_rows = (last >> kBits) - (first >> kBits) + 1;
-  const std::uint64_t row_end = last - ((num_rows - 1) << kBits);
+  const std::uint64_t lowest = KeyOf(place_m - reach_m, 1.0 / voxel_m_);
+  const std::uint64_t highest = KeyOf(place_m + reach_m, 1.0 / voxel_m_);
+  const auto lowest_height = static_cast<std::int32_t>(lowest & kAxisMask);
+  const auto highest_height = static_cast<std::int32_t>(highest & kAxisMask);
+  const std::uint64_t row_length = (highest >> kBits & kAxisMask) - (lowest >> kBits & kAxisMask);
+  const std::uint64_t num_rows = (highest >> 2 * kBits) - (lowest >> 2 * kBits) + 1;
+  const auto is_before = [](const Column& column, std::uint64_t key) { return column.key < key; };
+  auto column = columns_.begin();
   for (std::uint64_t row = 0; row < num_rows; ++row) {
-    auto column =
-        std::lower_bound(columns_.begin(), columns_.end(), first + (row << kBits), is_before);
-    for (; column != columns_.end() && column->key <= row_end + (row << kBits); ++column) {
-      for (std::size_t i = column->begin; i < column->end; ++i) {
+    const std::uint64_t row_begin = (lowest >> kBits) + (row << kBits);
+    column = std::lower_bound(column, columns_.end(), row_begin, is_before);
+    for (; column != columns_.end() && column->key <= row_begin + row_length; ++column) {
+      std::size_t i = column->begin;
+      while (i < column->end && heights_[i] < lowest_height) ++i;
+      for (; i < column->end && heights_[i] <= highest_height; ++i) {
         if ((means_m_[i] - place_m).squaredNorm() <= radius_m * radius_m) cells->push_back(i);
       }
     }

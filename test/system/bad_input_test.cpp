@@ -219,6 +219,11 @@ TEST_F(BadInput, FewerThanThreeSamples) {
       "--log",
       log,
       AllOf(HasSubstr(log), HasSubstr("fewer than three samples"), HasSubstr("2 of 2")));
+  // An earlier result stays, and nobody takes it for this one.
+  std::filesystem::create_directory(Path("out"));
+  const std::string earlier = folder_.Write("out/extrinsic.yaml", "earlier\n");
+  ExpectCalibrateRefuses("--log", log, HasSubstr("; " + earlier + " is of an earlier run"));
+  EXPECT_EQ(ReadWholeFile(earlier), "earlier\n");
 }
 
 TEST_F(BadInput, TableOfPosesCut) {

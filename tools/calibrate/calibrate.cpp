@@ -43,6 +43,12 @@ void Deliver(const std::filesystem::path& from, const std::filesystem::path& to)
   if (error) throw std::runtime_error(to.string() + ": cannot write: " + error.message());
 }
 
+// Says so if a result is there that is not the one just asked for.
+std::string EarlierResultIn(const std::filesystem::path& folder) {
+  const std::filesystem::path result = folder / kResultName;
+  return std::filesystem::exists(result) ? "; " + result.string() + " is of an earlier run" : "";
+}
+
 void Calibrate(const CalibrateArgs& args) {
   const Rig rig = LoadRig(args.rig);
   if (std::filesystem::exists(args.out) && !std::filesystem::is_directory(args.out)) {
@@ -56,7 +62,7 @@ void Calibrate(const CalibrateArgs& args) {
   if (!run->assessor().result()) {
     throw std::runtime_error(args.input.Given().string() +
                              ": no calibration: " + run->assessor().problem() + " (" +
-                             CountsOf(*run) + ")" + FailureAdvice(*run));
+                             CountsOf(*run) + ")" + EarlierResultIn(args.out) + FailureAdvice(*run));
   }
   const std::string report_problem = WriteReport(rig, *run, scratch.path());
   Deliver(scratch.path(), args.out);

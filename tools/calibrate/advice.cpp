@@ -55,6 +55,7 @@ const char* TextOn(LidarBoardMiss miss) {
     case LidarBoardMiss::kHidden:
       return "hold the board where the lidar sees all of it; check board.width_m and height_m";
     case LidarBoardMiss::kGap:
+      return "hold the board nearer, where more beams meet it; check board.width_m and height_m";
     case LidarBoardMiss::kLoose:
       return "hold the board nearer, as a diamond";
     case LidarBoardMiss::kBent:

@@ -39,26 +39,27 @@ double SpacingM(const Measurement& m) {
   return std::sqrt(m.model.width_m * m.model.height_m / num);
 }
 
-/// Whether the sensor looks past each edge, as far as a few beams need. A cloud that was cropped to
-/// the board shows hardly anything past any: then its hits alone must do.
-std::array<bool, 4> CoveredPast(const std::array<OutlineEdge, 4>& edges,
-                                const Measurement& m,
-                                const BeamIndex& beams) {
+/// Whether the sensor looks past each edge, as far as a few beams need.
+std::array<bool, 4> CoveredPast(const Measurement& m, const BeamIndex& beams) {
   const double past_edge_m = std::clamp(2 * SpacingM(m), 0.03, 0.1);
-  constexpr int kFewMisses = 4;  // for each of so many hits
   const Eigen::Isometry3d T_lidar_board = TransformOf(m.frame, m.outline.pose);
   const Eigen::Vector2d half_m(m.model.width_m / 2, m.model.height_m / 2);
-  const bool is_cropped = std::all_of(edges.begin(), edges.end(), [](const OutlineEdge& edge) {
-    return kFewMisses * edge.num_misses <= edge.num_hits;  // both 0 between scan lines
-  });
   std::array<bool, 4> is_covered{};
   for (std::size_t i = 0; i < 4; ++i) {
     const Eigen::Vector2d outward = OutwardOf(i);
     const Eigen::Vector2d past_m = outward.cwiseProduct(half_m) + past_edge_m * outward;
-    is_covered[i] =
-        is_cropped || beams.Covers(T_lidar_board * Eigen::Vector3d(past_m.x(), past_m.y(), 0.0));
+    is_covered[i] = beams.Covers(T_lidar_board * Eigen::Vector3d(past_m.x(), past_m.y(), 0.0));
   }
   return is_covered;
+}
+
+/// A cloud that was cropped to the board shows hardly anything past any edge: then its hits alone
+/// must do.
+bool IsCropped(const std::array<OutlineEdge, 4>& edges) {
+  constexpr int kFewMisses = 4;  // for each of so many hits
+  return std::all_of(edges.begin(), edges.end(), [](const OutlineEdge& edge) {
+    return kFewMisses * edge.num_misses <= edge.num_hits;  // both 0 between scan lines
+  });
 }
 
 /// "on the left", seen from the lidar: where an edge of the rectangle is.
@@ -80,9 +81,14 @@ std::optional<NoLidarBoard> OpenSide(const Measurement& m,
   constexpr double kMaxShortM = 0.05;   // hits of a closed outline come so near its edge...
   constexpr double kMaxSpacings = 1.5;  // ...or as near as the beams are to each other
   const double max_short_m = std::max(kMaxShortM, kMaxSpacings * SpacingM(m));
-  const std::array<bool, 4> is_covered = CoveredPast(edges, m, beams);
+  const std::array<bool, 4> is_covered = CoveredPast(m, beams);
+  const bool is_cropped = IsCropped(edges);
   const std::optional<std::size_t> edge =
-      OpenEdge(edges, is_covered, agreement, max_short_m, slack);
+      OpenEdge(edges,
+               is_cropped ? std::array<bool, 4>{true, true, true, true} : is_covered,
+               agreement,
+               max_short_m,
+               slack);
   if (!edge) return {};
   const LidarBoardMiss unhidden =
       is_covered[*edge] ? LidarBoardMiss::kGap : LidarBoardMiss::kCutOff;

@@ -68,7 +68,10 @@ Agreement Compare(const std::vector<OutlineBeam>& beams,
   };
   for (std::size_t x = 0; x < kNumFields; ++x) {
     for (std::size_t y = 0; y < kNumFields; ++y) {
-      if (!is_covered(x, y)) continue;
+      if (!is_covered(x, y)) {
+        if (fields[x][y] == Field::kEmpty) agreement.empty += kFieldShare;
+        continue;
+      }
       agreement.covered += kFieldShare;
       agreement.covered_half[x < kNumFields / 2 ? 3 : 1] += 2 * kFieldShare;
       agreement.covered_half[y < kNumFields / 2 ? 0 : 2] += 2 * kFieldShare;
@@ -98,7 +101,8 @@ bool CouldShowBoard(const std::vector<OutlineBeam>& beams, const OutlineModel& m
     else
       num_own += beam.is_hit;
   }
-  return inside[1] > 0 && inside[1] >= kMinHitsInside * (inside[0] + inside[1]) &&
+  // The scan may leave a gap just there.
+  return num_own > 0 && inside[1] >= kMinHitsInside * (inside[0] + inside[1]) &&
          outside[1] <=
              std::max(kMaxHitsOutside * (outside[0] + outside[1]), kMaxHitsPerOwn * num_own);
 }
@@ -115,10 +119,12 @@ std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
                                     double slack) {
   constexpr double kMinCovered = 0.8;
   std::optional<std::size_t> open;
-  bool is_outlined = true;  // from both sides, all around: gaps within are the sensor's
+  constexpr double kMaxShortIfOutlined = 0.5;  // of max_short_m: the hits alone must show it
+  bool is_outlined = agreement.empty <= 1.0 - kMinCovered;
   for (std::size_t i = 0; i < 4; ++i) {
     const double short_m = -edges[i].reach_m / slack;
-    is_outlined = is_outlined && IsClosed(edges[i]) && short_m < max_short_m / 2;
+    is_outlined = is_outlined && IsClosed(edges[i]) && edges[i].num_hits > 0 &&
+                  short_m < kMaxShortIfOutlined * max_short_m;
     if (IsClosed(edges[i]) || (is_covered[i] && short_m < max_short_m)) continue;
     if (!open || edges[i].reach_m < edges[*open].reach_m) open = i;
   }

@@ -18,6 +18,8 @@ struct Agreement {
   double covered = 0.0;
   /// ...and of the half towards each edge, in BoardSpec's order.
   std::array<double, 4> covered_half{};
+  /// Share of the fields where beams went past or ended before, and none hit.
+  double empty = 0.0;
 
   /// Nearly all hits inside, nearly all misses outside.
   bool IsBoardLike() const;
@@ -37,8 +39,10 @@ bool CouldShowBoard(const std::vector<OutlineBeam>& beams, const OutlineModel& m
 bool IsClosed(const OutlineEdge& edge);
 
 /// The edge (in BoardSpec's order) on whose side the board does not show where it ends, or is not
-/// seen itself. An edge that is not closed may still be seen: where beams past it would have come
-/// back from nothing (the sky), the hits must come up to it, to within `max_short_m`.
+/// seen itself. Where no beam went at all it need not be seen, if hits come up to all four edges
+/// and misses close them: some sensors leave gaps in each sweep. An edge that is not closed may
+/// still be seen: where beams past it would have come back from nothing (the sky), the hits must
+/// come up to it, to within `max_short_m`.
 ///
 /// @param is_covered  Whether the sensor looks past each edge.
 /// @param slack       Above 1 it loosens the test for a rough fit.

@@ -103,26 +103,26 @@ double RoughScore(const std::vector<OutlineBeam>& beams,
   return score_m;
 }
 
-/// Angles over half a turn, better than those beside them, the most promising first: from an angle
-/// beside a better one the fit would end at the same rectangle.
+/// Angles over half a turn, none worse than those beside it, the most promising first: from an
+/// angle beside a better one the fit would end at the same rectangle.
 std::vector<double> PromisingAngles(const std::vector<OutlineBeam>& beams,
                                     const OutlineModel& model,
                                     const Eigen::Vector2d& centre_m) {
   constexpr std::size_t kNumAngles = 12;  // 15 degrees apart: within reach of the wide blur
   std::array<double, kNumAngles> scores_m{};
-  const auto angle_rad = [](std::size_t i) { return kPi * static_cast<double>(i) / kNumAngles; };
+  const auto angle_at = [](std::size_t i) { return kPi * static_cast<double>(i) / kNumAngles; };
   for (std::size_t i = 0; i < kNumAngles; ++i) {
-    scores_m[i] = RoughScore(beams, model, {centre_m, angle_rad(i)}, model.blur_m);
+    scores_m[i] = RoughScore(beams, model, {centre_m, angle_at(i)}, model.blur_m);
   }
   std::vector<std::pair<double, double>> ranked;
   for (std::size_t i = 0; i < kNumAngles; ++i) {
     const double beside_m =
         std::max(scores_m[(i + 1) % kNumAngles], scores_m[(i + kNumAngles - 1) % kNumAngles]);
-    if (scores_m[i] >= beside_m) ranked.emplace_back(-scores_m[i], angle_rad(i));
+    if (scores_m[i] >= beside_m) ranked.emplace_back(-scores_m[i], angle_at(i));
   }
   std::sort(ranked.begin(), ranked.end());
   std::vector<double> angles_rad;
-  for (const auto& [score_m, angle] : ranked) angles_rad.push_back(angle);
+  for (const auto& [score_m, angle_rad] : ranked) angles_rad.push_back(angle_rad);
   return angles_rad;
 }
 

@@ -31,13 +31,15 @@ bool IsBulky(const PointMoments& moments, double thickness_m) {
   return covariance_m2.determinant() > thickness_m * thickness_m * half_trace_m2 * half_trace_m2;
 }
 
+/// Narrower (1 sigma), points are as good as on a line, which has no plane.
+double MinWidthM(const PatchSearchOptions& options) { return options.voxel_m / 5; }
+
 /// Fits a surface to the surroundings of each cell.
 std::vector<CellSurface> FitSurfaces(const VoxelGrid& grid, const PatchSearchOptions& options) {
   constexpr double kMinPoints = 12;  // two scan lines of six points
   // Noise of 10 mm and scan lines up to 30 mm apart give at most about 20 mm (1 sigma); a single
   // scan line spreads along one axis only.
   const double max_thickness_m = options.band_m / 2;
-  const double min_width_m = options.voxel_m / 5;
   std::vector<CellSurface> surfaces(grid.NumCells());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     PointMoments around;
@@ -45,7 +47,7 @@ std::vector<CellSurface> FitSurfaces(const VoxelGrid& grid, const PatchSearchOpt
     if (around.num < kMinPoints || IsBulky(around, max_thickness_m)) continue;
     surfaces[i].plane = FitPlane(around);
     surfaces[i].is_planar = surfaces[i].plane.spread_m[0] < max_thickness_m &&
-                            surfaces[i].plane.spread_m[1] > min_width_m;
+                            surfaces[i].plane.spread_m[1] > MinWidthM(options);
   }
   return surfaces;
 }
@@ -154,6 +156,10 @@ std::vector<std::size_t> Compact(const std::vector<std::size_t>& members,
   return compact;
 }
 
+bool HasBoardSize(const PlanarPatch& patch, const PatchSearchOptions& options) {
+  return patch.num_points >= options.min_points && Unlikeness(patch, options) <= std::log(2.0);
+}
+
 /// The members, and what continues their plane across gaps, as far as a board may reach: scan lines
 /// may be more than a cell apart, and some sensors leave parts of it out.
 std::vector<std::size_t> AcrossGaps(const std::vector<std::size_t>& members,
@@ -161,11 +167,12 @@ std::vector<std::size_t> AcrossGaps(const std::vector<std::size_t>& members,
                                     const PatchSearchOptions& options,
                                     const std::vector<CellSurface>& surfaces) {
   // Little by little: a small piece's plane is not known far from it.
-  constexpr std::array<double, 2> kShares = {0.6, 1.0};
+  constexpr std::array<double, 3> kShares = {0.5, 0.75, 1.0};
   std::vector<std::size_t> all = members;
   std::vector<std::size_t> near;
   for (const double share : kShares) {
     const PlanarPatch piece = Describe(all, grid);
+    if (piece.plane.spread_m[1] < MinWidthM(options)) break;  // a line has no plane
     near.clear();
     grid.AppendWithin(piece.middle_m, share * options.max_radius_m, &near);
     all = members;
@@ -176,8 +183,19 @@ std::vector<std::size_t> AcrossGaps(const std::vector<std::size_t>& members,
   return all;
 }
 
-bool HasBoardSize(const PlanarPatch& patch, const PatchSearchOptions& options) {
-  return patch.num_points >= options.min_points && Unlikeness(patch, options) <= std::log(2.0);
+/// Of what a gap divides, which may be one board seen in pieces, or a board and what stands beside
+/// it: all if that has the board's size, or else the piece at hand if it has. Empty if neither has.
+std::vector<std::size_t> PieceOfBoardSize(const std::vector<std::size_t>& members,
+                                          const VoxelGrid& grid,
+                                          const PatchSearchOptions& options,
+                                          const std::vector<CellSurface>& surfaces) {
+  const std::vector<std::size_t> all = AcrossGaps(members, grid, options, surfaces);
+  std::vector<std::size_t> piece = Compact(all, grid, options);
+  if (HasBoardSize(Describe(piece, grid), options)) return piece;
+  if (all.size() == members.size()) return {};
+  piece = Compact(members, grid, options);
+  if (HasBoardSize(Describe(piece, grid), options)) return piece;
+  return {};
 }
 
 }  // namespace
@@ -193,17 +211,11 @@ std::vector<PlanarPatch> FindPlanarPatches(const std::vector<Eigen::Vector3d>& p
     const std::int32_t grown = num_grown++;
     const std::vector<std::size_t> members = Grow(seed, grown, grid, options, &surfaces);
     if (IsTooLarge(Describe(members, grid), options)) continue;
-    // What a gap divides may be one board seen in pieces, or a board and what stands beside it: the
-    // larger of the two that has the board's size.
-    for (const auto& whole : {AcrossGaps(members, grid, options, surfaces), members}) {
-      const std::vector<std::size_t> piece = Compact(whole, grid, options);
-      const PlanarPatch patch = Describe(piece, grid);
-      if (!HasBoardSize(patch, options)) continue;
-      patches.push_back(patch);
-      for (const std::size_t i : members) surfaces[i].patch = kNone;
-      for (const std::size_t i : piece) surfaces[i].patch = grown;
-      break;
-    }
+    const std::vector<std::size_t> piece = PieceOfBoardSize(members, grid, options, surfaces);
+    if (piece.empty()) continue;
+    patches.push_back(Describe(piece, grid));
+    for (const std::size_t i : members) surfaces[i].patch = kNone;
+    for (const std::size_t i : piece) surfaces[i].patch = grown;
   }
   std::stable_sort(patches.begin(), patches.end(), [&](const auto& a, const auto& b) {
     return Unlikeness(a, options) < Unlikeness(b, options);

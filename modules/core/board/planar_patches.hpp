@@ -15,11 +15,12 @@ struct PatchSearchOptions {
   /// Spread (1 sigma) that is looked for along the shorter and the longer axis; patches with less
   /// than half of it or more than twice as much are something else.
   Eigen::Vector2d spread_m = Eigen::Vector2d(0.18, 0.25);
-  double max_radius_m = 0.7;  ///< What is farther from a patch's middle only hangs on to it.
+  /// What is farther from a patch's middle only hangs on to it; parts so near are joined.
+  double max_radius_m = 0.7;
   int min_points = 30;
 };
 
-/// A connected planar piece of the scene.
+/// A planar piece of the scene, connected but for gaps of the scan.
 struct PlanarPatch {
   PlaneFit plane;
   /// Mean of its cells' means, which the points' density does not shift.

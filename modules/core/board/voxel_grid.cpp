@@ -12,9 +12,12 @@ constexpr int kBits = 21;  // for each axis: +-1 million cells, beyond any range
 constexpr double kOffset = 1 << (kBits - 1);
 constexpr std::uint64_t kAxisMask = (std::uint64_t{1} << kBits) - 1;
 
+/// Places beyond the range are in its outermost cells, but for one: steps of one cell never leave
+/// it.
 std::uint64_t PackedAxis(double cell) {
   // Positive once the offset is added, so that the conversion rounds down.
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(cell + kOffset)) & kAxisMask;
+  return static_cast<std::uint64_t>(
+      std::clamp(cell + kOffset, 1.0, static_cast<double>(kAxisMask - 1)));
 }
 
 /// Orders like (x, y, z).
@@ -94,7 +97,7 @@ VoxelGrid::VoxelGrid(const std::vector<Eigen::Vector3d>& points_m, double voxel_
 }
 
 void VoxelGrid::ListTouching() {
-  // Of cells of one column beside that at hand.
+  // Cells of a column that touches the one at hand, or of that itself.
   struct Run {
     std::size_t first;
     std::size_t end;
@@ -142,6 +145,7 @@ void VoxelGrid::AppendWithin(const Eigen::Vector3d& place_m,
   for (std::uint64_t row = 0; row < num_rows; ++row) {
     const std::uint64_t row_begin = (lowest >> kBits) + (row << kBits);
     column = std::lower_bound(column, columns_.end(), row_begin, is_before);
+    if (column == columns_.end()) return;
     for (; column != columns_.end() && column->key <= row_begin + row_length; ++column) {
       std::size_t i = column->begin;
       while (i < column->end && heights_[i] < lowest_height) ++i;

@@ -43,7 +43,7 @@ class VoxelGrid {
 
   double voxel_m_;
   // Of each cell, by what is used together.
-  std::vector<std::int32_t> heights_;  // in the column, in cells
+  std::vector<std::int32_t> heights_;  // in the column, in cells from far below
   std::vector<PointMoments> moments_;
   std::vector<Eigen::Vector3d> means_m_;
   std::vector<Column> columns_;              // by key

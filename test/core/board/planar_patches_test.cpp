@@ -77,6 +77,18 @@ TEST(FindPlanarPatches, LeavesOutAPoleInThePlane) {
   EXPECT_LT(patches.front().num_points, 840);
 }
 
+TEST(FindPlanarPatches, FindsARectangleThatALongPoleMakesAsLongAsAWall) {
+  std::mt19937 random(8);
+  std::vector<Eigen::Vector3d> points_m;
+  for (int i = 0; i < 800; ++i) {
+    points_m.emplace_back(2.0, Uniform(&random, -0.3, 0.3), Uniform(&random, -0.42, 0.42));
+  }
+  for (int i = 0; i < 300; ++i) points_m.emplace_back(2.0, 0.0, Uniform(&random, -2.1, -0.42));
+  const auto patches = FindPlanarPatches(points_m, {});
+  ASSERT_EQ(patches.size(), 1U);
+  EXPECT_LT((patches.front().middle_m - Eigen::Vector3d(2, 0, 0)).norm(), 0.06);  // as above
+}
+
 TEST(BeamIndex, FindsWhatAScanOfAllBeamsFinds) {
   constexpr double kMinRangeM = 0.5;
   const PointCloud cloud = UniformNoise(5000);

@@ -55,9 +55,25 @@ TEST(VoxelGrid, FindsTheCellsWithinARadius) {
     for (std::size_t i = 0; i < grid.NumCells(); ++i) {
       if ((grid.MeanM(i) - place_m).norm() <= radius_m) expected.push_back(i);
     }
-    std::vector<std::size_t> within;
+    std::vector<std::size_t> within = {7};  // stays
     grid.AppendWithin(place_m, radius_m, &within);
+    expected.insert(expected.begin(), 7);
     ASSERT_EQ(within, expected) << place_m.transpose() << ", radius " << radius_m;
+  }
+}
+
+TEST(VoxelGrid, EndsAreNoNeighbours) {
+  // As far out as cells go and farther: at both ends of the range, and beyond.
+  const std::vector<Eigen::Vector3d> points_m = {{-3e5, -3e5, -3e5}, {0, 0, 0}, {3e5, 3e5, 3e5}};
+  const VoxelGrid grid(points_m, kVoxelM);
+  ASSERT_EQ(grid.NumCells(), 3u);
+  for (std::size_t at = 0; at < 3; ++at) {
+    int num_touching = 0;
+    grid.ForEachTouching(at, [&num_touching](std::size_t) { ++num_touching; });
+    EXPECT_EQ(num_touching, 1);
+    std::vector<std::size_t> within;
+    grid.AppendWithin(points_m[at], 1.0, &within);
+    EXPECT_EQ(within.size(), 1u);
   }
 }
 

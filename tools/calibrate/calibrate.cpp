@@ -60,9 +60,9 @@ void Calibrate(const CalibrateArgs& args) {
   const auto run = CollectSamples(rig, args.input, scratch.path());
   run->Finish(/*is_collecting_only=*/false);
   if (!run->assessor().result()) {
-    throw std::runtime_error(args.input.Given().string() +
-                             ": no calibration: " + run->assessor().problem() + " (" +
-                             CountsOf(*run) + ")" + EarlierResultIn(args.out) + FailureAdvice(*run));
+    throw std::runtime_error(
+        args.input.Given().string() + ": no calibration: " + run->assessor().problem() + " (" +
+        CountsOf(*run) + ")" + EarlierResultIn(args.out) + FailureAdvice(*run));
   }
   const std::string report_problem = WriteReport(rig, *run, scratch.path());
   Deliver(scratch.path(), args.out);

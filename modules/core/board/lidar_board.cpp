@@ -129,7 +129,7 @@ Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
     const BoardSpec& board,
     const LidarBoardOptions& options,
     const LidarBackground* background) {
-  // Bounds on the time. Of the simulated boards of every pattern 98 % are among the first three.
+  // Bounds on the time: patches come in the order of how like the board they are spread.
   constexpr std::size_t kMaxPatches = 8;
   constexpr std::size_t kMaxPatchesUntilFound = 40;
   constexpr double kAsGood = 0.8;  // share of the best likelihood that a rival may reach

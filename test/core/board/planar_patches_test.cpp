@@ -15,6 +15,15 @@ double Uniform(std::mt19937* random, double low, double high) {
   return low + (high - low) * static_cast<double>((*random)()) / 4294967296.0;
 }
 
+/// Of 0.6 x 0.84 m, 2 m ahead.
+std::vector<Eigen::Vector3d> Rectangle(std::mt19937* random) {
+  std::vector<Eigen::Vector3d> points_m;
+  for (int i = 0; i < 800; ++i) {
+    points_m.emplace_back(2.0, Uniform(random, -0.3, 0.3), Uniform(random, -0.42, 0.42));
+  }
+  return points_m;
+}
+
 PointCloud UniformNoise(int num_points) {
   std::mt19937 random(4);
   PointCloud cloud;
@@ -46,10 +55,7 @@ TEST(FitPlane, IsExactOnAPlane) {
 
 TEST(FindPlanarPatches, FindsARectangleAndNeitherWallNorBush) {
   std::mt19937 random(5);
-  std::vector<Eigen::Vector3d> points_m;
-  for (int i = 0; i < 800; ++i) {
-    points_m.emplace_back(2.0, Uniform(&random, -0.3, 0.3), Uniform(&random, -0.42, 0.42));
-  }
+  std::vector<Eigen::Vector3d> points_m = Rectangle(&random);
   for (int i = 0; i < 8000; ++i) {
     points_m.emplace_back(5.0, Uniform(&random, -4, 4), Uniform(&random, -1, 2));
     points_m.emplace_back(
@@ -64,10 +70,7 @@ TEST(FindPlanarPatches, FindsARectangleAndNeitherWallNorBush) {
 
 TEST(FindPlanarPatches, LeavesOutAPoleInThePlane) {
   std::mt19937 random(7);
-  std::vector<Eigen::Vector3d> points_m;
-  for (int i = 0; i < 800; ++i) {
-    points_m.emplace_back(2.0, Uniform(&random, -0.3, 0.3), Uniform(&random, -0.42, 0.42));
-  }
+  std::vector<Eigen::Vector3d> points_m = Rectangle(&random);
   for (int i = 0; i < 80; ++i) points_m.emplace_back(2.0, 0.0, Uniform(&random, -1.4, -0.42));
   const auto patches = FindPlanarPatches(points_m, {});
   ASSERT_EQ(patches.size(), 1U);
@@ -79,10 +82,7 @@ TEST(FindPlanarPatches, LeavesOutAPoleInThePlane) {
 
 TEST(FindPlanarPatches, FindsARectangleThatALongPoleMakesAsLongAsAWall) {
   std::mt19937 random(8);
-  std::vector<Eigen::Vector3d> points_m;
-  for (int i = 0; i < 800; ++i) {
-    points_m.emplace_back(2.0, Uniform(&random, -0.3, 0.3), Uniform(&random, -0.42, 0.42));
-  }
+  std::vector<Eigen::Vector3d> points_m = Rectangle(&random);
   for (int i = 0; i < 300; ++i) points_m.emplace_back(2.0, 0.0, Uniform(&random, -2.1, -0.42));
   const auto patches = FindPlanarPatches(points_m, {});
   ASSERT_EQ(patches.size(), 1U);

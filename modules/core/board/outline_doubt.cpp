@@ -55,7 +55,7 @@ Moments PosteriorAlong(const std::vector<OutlineBeam>& beams,
                        double sigma_m) {
   constexpr int kHalfSteps = 20;
   constexpr double kSigmas = 3.0;
-  constexpr double kFarthestM = 0.15;  // no lidar leaves a wider gap on a board that it sees
+  constexpr double kFarthestM = 0.3;  // as far as misses beside an edge count
   const double step_m = std::min(kSigmas * sigma_m, kFarthestM) / kHalfSteps;
   std::array<double, 2 * kHalfSteps + 1> log_likelihood{};
   for (int i = -kHalfSteps; i <= kHalfSteps; ++i) {

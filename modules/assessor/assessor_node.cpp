@@ -6,11 +6,11 @@
 #include <system_error>
 
 #include "core/selection/voq.hpp"
+#include "files/atomic_file.hpp"
 #include "messaging/convert_assessment.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_result.hpp"
 #include "messaging/made_from.hpp"
-#include "rig/atomic_file.hpp"
 
 namespace voqcal {
 namespace {

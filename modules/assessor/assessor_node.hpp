@@ -7,7 +7,7 @@
 #include "assessor/session_views.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
-#include "rig/result_file.hpp"
+#include "result/result_file.hpp"
 #include "rig/rig.hpp"
 #include "voqcal/assessment_t.hpp"
 #include "voqcal/extrinsic_averaged_t.hpp"

@@ -8,9 +8,9 @@
 #include "camera_driver/guided_camera_source.hpp"
 #include "camera_driver/video_source.hpp"
 #include "core/simulation/simulation.hpp"
+#include "files/atomic_file.hpp"
 #include "images/encoded_image.hpp"
 #include "images/jpeg.hpp"
-#include "rig/atomic_file.hpp"
 #include "rig/frame_folder.hpp"
 
 namespace voqcal {

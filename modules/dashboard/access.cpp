@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 
 namespace voqcal {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
-#include "rig/atomic_file.hpp"
-#include "rig/extrinsic_text.hpp"
-#include "rig/result_file.hpp"
+#include "files/atomic_file.hpp"
+#include "result/extrinsic_text.hpp"
+#include "result/result_file.hpp"
 
 namespace voqcal {
 namespace {

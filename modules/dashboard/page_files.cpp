@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 
 namespace voqcal {
 

@@ -10,7 +10,7 @@
 #include "core/selection/voq.hpp"
 #include "dashboard/slot.hpp"
 #include "messaging/convert_board.hpp"
-#include "rig/extrinsic_text.hpp"
+#include "result/extrinsic_text.hpp"
 
 namespace voqcal {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/board/lidar_board.hpp"
+#include "core/lidar_detection/lidar_board.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/rig.hpp"

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "core/simulation/simulation.hpp"
+#include "files/point_cloud_file.hpp"
 #include "lidar_driver/guided_lidar_source.hpp"
 #include "lidar_driver/packet_lidar_source.hpp"
 #include "rig/frame_folder.hpp"
-#include "rig/point_cloud_file.hpp"
 
 namespace voqcal {
 namespace {

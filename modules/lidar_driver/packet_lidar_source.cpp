@@ -4,7 +4,7 @@
 
 #include "lidar_driver/pcap_packets.hpp"
 #include "lidar_driver/udp_packets.hpp"
-#include "rig/lidar_bias_yaml.hpp"
+#include "result/lidar_bias_yaml.hpp"
 
 namespace voqcal {
 namespace {

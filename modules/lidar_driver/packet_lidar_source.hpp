@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "core/estimation/lidar_bias.hpp"
 #include "core/lidar/packet_stream.hpp"
+#include "core/likelihood/lidar_bias.hpp"
 #include "lidar_driver/lidar_source.hpp"
 #include "lidar_driver/packet_source.hpp"
 #include "rig/rig.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/board/board_sample.hpp"
-#include "core/board/sample_picker.hpp"
+#include "core/sampling/sample_picker.hpp"
 #include "voqcal/board_pose_t.hpp"
 #include "voqcal/camera_board_t.hpp"
 #include "voqcal/lidar_board_t.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "rig/yaml_reader.hpp"
+#include "files/yaml_reader.hpp"
 
 namespace voqcal {
 

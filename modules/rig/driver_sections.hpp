@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "files/yaml_reader.hpp"
 #include "rig/rig.hpp"
-#include "rig/yaml_reader.hpp"
 
 namespace voqcal {
 

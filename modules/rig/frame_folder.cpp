@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "rig/natural_order.hpp"
+#include "files/natural_order.hpp"
 
 namespace voqcal {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <arpa/inet.h>
 
-#include "rig/number_text.hpp"
+#include "files/number_text.hpp"
 
 namespace voqcal {
 namespace {

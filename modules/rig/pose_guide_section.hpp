@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/guidance/next_pose.hpp"
-#include "rig/yaml_reader.hpp"
+#include "files/yaml_reader.hpp"
 
 namespace voqcal {
 

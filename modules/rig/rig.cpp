@@ -3,9 +3,9 @@
 #include <arpa/inet.h>
 
 #include "core/problems.hpp"
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
+#include "files/sha256.hpp"
 #include "rig/rig_sections.hpp"
-#include "rig/sha256.hpp"
 
 namespace voqcal {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <set>
 
+#include "files/transform_yaml.hpp"
 #include "rig/driver_sections.hpp"
 #include "rig/lcm_url.hpp"
 #include "rig/pose_guide_section.hpp"
-#include "rig/transform_yaml.hpp"
 
 namespace voqcal {
 namespace {

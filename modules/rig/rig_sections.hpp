@@ -1,7 +1,7 @@
 #pragma once
 
+#include "files/yaml_reader.hpp"
 #include "rig/rig.hpp"
-#include "rig/yaml_reader.hpp"
 
 namespace voqcal {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/board/sample_picker.hpp"
+#include "core/sampling/sample_picker.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/rig.hpp"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/board/board_sample.hpp"
+#include "files/sha256.hpp"
 #include "messaging/log.hpp"
 #include "messaging/session_scenes.hpp"
-#include "rig/sha256.hpp"
 #include "sample_collector/frame_buffer.hpp"
 
 namespace voqcal {

@@ -1,6 +1,6 @@
 // First byte: PCD or PLY. Then the file.
+#include "files/point_cloud_file.hpp"
 #include "fuzz/fuzz_input.hpp"
-#include "rig/point_cloud_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   voqcal::fuzz::Input input(data, size);

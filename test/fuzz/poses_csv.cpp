@@ -1,5 +1,5 @@
 // A table of features that another program extracted.
-#include "rig/poses_csv.hpp"
+#include "result/poses_csv.hpp"
 
 #include "fuzz/fuzz_input.hpp"
 

@@ -1,7 +1,7 @@
 // A rig file.
+#include "files/yaml_reader.hpp"
 #include "fuzz/fuzz_input.hpp"
 #include "rig/rig_sections.hpp"
-#include "rig/yaml_reader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text = voqcal::fuzz::Input(data, size).Text();

@@ -8,12 +8,12 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "files/atomic_file.hpp"
 #include "fuzz/lcm_types.hpp"
 #include "messaging/convert.hpp"
 #include "messaging/log.hpp"
-#include "rig/atomic_file.hpp"
-#include "rig/lidar_bias_yaml.hpp"
-#include "rig/result_file.hpp"
+#include "result/lidar_bias_yaml.hpp"
+#include "result/result_file.hpp"
 #include "support/pcap_file.hpp"
 #include "support/spectrum_packet.hpp"
 #include "support/synthetic_samples.hpp"

@@ -5,9 +5,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "core/board/planar_pose.hpp"
-#include "core/estimation/pose_variety.hpp"
+#include "core/camera_detection/planar_pose.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/selection/pose_variety.hpp"
 #include "core/simulation/lidar_simulator.hpp"
 #include "support/synthetic_samples.hpp"
 

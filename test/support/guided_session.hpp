@@ -6,8 +6,8 @@
 
 #include <Eigen/Geometry>
 
-#include "core/board/lidar_board.hpp"
 #include "core/guidance/next_pose.hpp"
+#include "core/lidar_detection/lidar_board.hpp"
 #include "core/simulation/simulation.hpp"
 #include "support/synthetic_samples.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/board/lidar_board.hpp"
+#include "core/lidar_detection/lidar_board.hpp"
 #include "core/simulation/lidar_simulator.hpp"
 #include "core/simulation/scan_pattern.hpp"
 

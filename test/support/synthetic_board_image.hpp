@@ -8,8 +8,8 @@
 #include <opencv2/core.hpp>
 
 #include "core/board/board_spec.hpp"
-#include "core/board/charuco_corners.hpp"
 #include "core/camera/camera_model.hpp"
+#include "core/camera_detection/charuco_corners.hpp"
 
 namespace voqcal::test {
 

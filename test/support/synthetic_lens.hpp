@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/board/board_sample.hpp"
-#include "core/board/planar_pose.hpp"
 #include "core/camera/camera_model.hpp"
+#include "core/camera_detection/planar_pose.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal::test {

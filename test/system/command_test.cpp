@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "files/atomic_file.hpp"
 #include "messaging/bus.hpp"
-#include "rig/atomic_file.hpp"
 #include "sample_collector/session_log.hpp"
 #include "support/synthetic_samples.hpp"
 #include "support/temporary_folder.hpp"

@@ -4,7 +4,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/persistence.hpp>
 
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 #include "rig/rig.hpp"
 #include "support/temporary_folder.hpp"
 #include "system/system_test.hpp"

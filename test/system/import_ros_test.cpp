@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 #include "rig/rig.hpp"
 #include "support/simulated_log.hpp"
 #include "support/temporary_folder.hpp"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 #include "support/real_data.hpp"
 #include "support/temporary_folder.hpp"
 #include "system/system_test.hpp"

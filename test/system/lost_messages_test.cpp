@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include "files/atomic_file.hpp"
 #include "messaging/log.hpp"
-#include "rig/atomic_file.hpp"
 #include "rig/rig.hpp"
 #include "support/simulated_log.hpp"
 #include "support/temporary_folder.hpp"

@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "files/atomic_file.hpp"
 #include "messaging/bus.hpp"
-#include "rig/atomic_file.hpp"
 #include "rig/rig.hpp"
 #include "sample_collector/sample_collector_node.hpp"
 #include "support/sightings.hpp"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 #include "rig/rig.hpp"
 #include "support/real_data.hpp"
 #include "support/simulated_log.hpp"

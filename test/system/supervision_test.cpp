@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 #include "support/temporary_folder.hpp"
 #include "system/system_test.hpp"
 

@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <system_error>
 
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace voqcal::test {

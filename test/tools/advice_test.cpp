@@ -5,9 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/board/camera_board_fault.hpp"
-#include "core/board/lidar_board_miss.hpp"
-#include "core/board/sample_picker.hpp"
+#include "core/camera_detection/camera_board_fault.hpp"
+#include "core/lidar_detection/lidar_board_miss.hpp"
+#include "core/sampling/sample_picker.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal {

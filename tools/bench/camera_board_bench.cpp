@@ -5,7 +5,7 @@
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/board/camera_board.hpp"
+#include "core/camera_detection/camera_board.hpp"
 #include "core/geometry/rigid.hpp"
 #include "support/synthetic_board_image.hpp"
 #include "support/synthetic_samples.hpp"

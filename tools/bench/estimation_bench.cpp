@@ -5,7 +5,7 @@
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/scores.hpp"
 #include "core/estimation/average.hpp"
-#include "core/estimation/consistency.hpp"
+#include "core/selection/consistency.hpp"
 #include "core/selection/select_sets.hpp"
 #include "core/selection/voq.hpp"
 #include "study/all_sets.hpp"

@@ -7,7 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/board/lidar_board.hpp"
+#include "core/lidar_detection/lidar_board.hpp"
 #include "core/median.hpp"
 #include "simulated_scene.hpp"
 #include "support/real_data.hpp"

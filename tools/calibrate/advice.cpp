@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/board/camera_board_fault.hpp"
-#include "core/board/lidar_board_miss.hpp"
+#include "core/camera_detection/camera_board_fault.hpp"
 #include "core/format.hpp"
+#include "core/lidar_detection/lidar_board_miss.hpp"
 
 namespace voqcal {
 namespace {

@@ -13,9 +13,9 @@
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
+#include "files/atomic_file.hpp"
 #include "messaging/log.hpp"
 #include "report/write_report.hpp"
-#include "rig/atomic_file.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {

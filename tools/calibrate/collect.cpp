@@ -9,7 +9,7 @@
 #include "common/progress.hpp"
 #include "core/format.hpp"
 #include "messaging/log.hpp"
-#include "rig/poses_csv.hpp"
+#include "result/poses_csv.hpp"
 #include "sample_collector/session_log.hpp"
 
 namespace voqcal {

@@ -12,9 +12,9 @@
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
 #include "core/assessment/best_extrinsic.hpp"
-#include "core/estimation/consistency.hpp"
-#include "rig/lidar_bias_yaml.hpp"
-#include "rig/result_file.hpp"
+#include "core/selection/consistency.hpp"
+#include "result/lidar_bias_yaml.hpp"
+#include "result/result_file.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {

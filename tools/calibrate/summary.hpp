@@ -4,7 +4,7 @@
 
 #include "core/assessment/scores.hpp"
 #include "core/assessment/verdict.hpp"
-#include "rig/result_file.hpp"
+#include "result/result_file.hpp"
 
 namespace voqcal {
 

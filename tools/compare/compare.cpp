@@ -9,7 +9,7 @@
 
 #include "common/tool_main.hpp"
 #include "core/geometry/rigid.hpp"
-#include "rig/result_file.hpp"
+#include "result/result_file.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {

@@ -8,9 +8,9 @@
 
 #include "common/output_file.hpp"
 #include "common/tool_main.hpp"
-#include "rig/atomic_file.hpp"
-#include "rig/extrinsic_text.hpp"
-#include "rig/result_file.hpp"
+#include "files/atomic_file.hpp"
+#include "result/extrinsic_text.hpp"
+#include "result/result_file.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {

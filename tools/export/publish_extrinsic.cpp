@@ -11,7 +11,7 @@
 #include "common/tool_main.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/convert_result.hpp"
-#include "rig/result_file.hpp"
+#include "result/result_file.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/estimation/likelihood.hpp"
+#include "core/likelihood/likelihood.hpp"
 #include "core/median.hpp"
 #include "figures/figures.hpp"
 #include "figures/simulated_session.hpp"

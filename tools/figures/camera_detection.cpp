@@ -13,11 +13,11 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/utility.hpp>
 
-#include "core/board/camera_board.hpp"
+#include "core/camera_detection/camera_board.hpp"
 #include "core/geometry/rigid.hpp"
 #include "figures/figures.hpp"
+#include "files/atomic_file.hpp"
 #include "images/png.hpp"
-#include "rig/atomic_file.hpp"
 #include "support/camera_scenes.hpp"
 
 namespace voqcal {

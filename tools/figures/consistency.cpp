@@ -1,6 +1,6 @@
 // voqcal_figures consistency: how surely wrong samples are found before any extrinsic is known.
 
-#include "core/estimation/consistency.hpp"
+#include "core/selection/consistency.hpp"
 
 #include <cstdio>
 #include <memory>

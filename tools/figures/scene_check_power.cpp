@@ -8,7 +8,7 @@
 #include "assessor/session_views.hpp"
 #include "core/assessment/scene_check.hpp"
 #include "figures/figures.hpp"
-#include "rig/result_file.hpp"
+#include "result/result_file.hpp"
 #include "rig/rig.hpp"
 #include "sample_collector/session_log.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "core/board/sample_picker.hpp"
-#include "core/estimation/consistency.hpp"
+#include "core/sampling/sample_picker.hpp"
+#include "core/selection/consistency.hpp"
 
 namespace voqcal {
 

@@ -9,7 +9,7 @@
 #include "calibrate/collect.hpp"
 #include "common/scratch_folder.hpp"
 #include "core/assessment/best_extrinsic.hpp"
-#include "core/estimation/consistency.hpp"
+#include "core/selection/consistency.hpp"
 #include "core/selection/select_sets.hpp"
 #include "core/simulation/keyed_noise.hpp"
 #include "figures/figures.hpp"

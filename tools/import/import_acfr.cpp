@@ -14,12 +14,12 @@
 #include "common/progress.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
+#include "files/atomic_file.hpp"
+#include "files/point_cloud_file.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/log.hpp"
-#include "rig/atomic_file.hpp"
 #include "rig/frame_folder.hpp"
-#include "rig/point_cloud_file.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {

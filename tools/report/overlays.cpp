@@ -10,11 +10,11 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "files/atomic_file.hpp"
 #include "images/jpeg.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/session_scenes.hpp"
-#include "rig/atomic_file.hpp"
 
 namespace voqcal {
 namespace {

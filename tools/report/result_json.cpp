@@ -15,10 +15,10 @@
 #include "core/assessment/verdict.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/selection/voq.hpp"
+#include "files/number_text.hpp"
 #include "messaging/convert_result.hpp"
 #include "report/overlays.hpp"
-#include "rig/number_text.hpp"
-#include "rig/result_file.hpp"
+#include "result/result_file.hpp"
 
 namespace voqcal {
 namespace {

@@ -2,10 +2,10 @@
 
 #include "common/run_program.hpp"
 #include "common/scratch_folder.hpp"
+#include "files/atomic_file.hpp"
 #include "messaging/session_scenes.hpp"
 #include "report/overlays.hpp"
 #include "report/result_json.hpp"
-#include "rig/atomic_file.hpp"
 
 namespace voqcal {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/estimation/metres_per_pixel.hpp"
+#include "core/board/metres_per_pixel.hpp"
 #include "core/selection/scene_error.hpp"
 #include "core/selection/voq.hpp"
 

@@ -15,7 +15,7 @@
 #include "common/run_program.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
-#include "core/estimation/consistency.hpp"
+#include "core/selection/consistency.hpp"
 #include "rig/rig.hpp"
 #include "study/study_files.hpp"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "rig/atomic_file.hpp"
-#include "rig/number_text.hpp"
+#include "files/atomic_file.hpp"
+#include "files/number_text.hpp"
 
 namespace voqcal {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/estimation/pose_variety.hpp"
 #include "core/problems.hpp"
+#include "core/selection/pose_variety.hpp"
 
 namespace voqcal {
 namespace {

@@ -11,8 +11,8 @@
 #include "core/board/board_sample.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/estimation/average.hpp"
-#include "core/estimation/likelihood.hpp"
 #include "core/estimation/refine.hpp"
+#include "core/likelihood/likelihood.hpp"
 
 namespace voqcal {
 

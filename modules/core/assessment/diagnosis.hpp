@@ -10,7 +10,7 @@
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
-#include "core/estimation/lidar_bias.hpp"
+#include "core/likelihood/lidar_bias.hpp"
 
 namespace voqcal {
 

@@ -7,8 +7,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "core/board/planar_pose.hpp"
-#include "core/estimation/half_turn.hpp"
+#include "core/board/half_turn.hpp"
+#include "core/camera_detection/planar_pose.hpp"
 #include "core/geometry/rigid.hpp"
 
 namespace voqcal {

@@ -11,7 +11,7 @@
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
-#include "core/estimation/likelihood.hpp"
+#include "core/likelihood/likelihood.hpp"
 
 namespace voqcal {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/estimation/half_turn.hpp"
+#include "core/board/half_turn.hpp"
 #include "core/geometry/rigid.hpp"
 
 namespace voqcal {

@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "core/board/board_sample.hpp"
+#include "core/board/metres_per_pixel.hpp"
 #include "core/camera/camera_model.hpp"
-#include "core/estimation/metres_per_pixel.hpp"
 #include "core/estimation/refine.hpp"
 
 namespace voqcal {

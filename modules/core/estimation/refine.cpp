@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -179,18 +178,6 @@ double CentreRmsPx(const std::vector<const BoardSample*>& samples,
 }
 
 }  // namespace
-
-std::string ToString(RefineStatus status) {
-  switch (status) {
-    case RefineStatus::kConverged:
-      return "converged";
-    case RefineStatus::kNotConverged:
-      return "not converged";
-    case RefineStatus::kDegenerate:
-      return "degenerate";
-  }
-  throw std::logic_error("unknown RefineStatus");
-}
 
 std::vector<std::string> RefineOptions::Problems() const {
   ProblemList problems;

@@ -8,12 +8,10 @@
 
 #include "core/board/board_sample.hpp"
 #include "core/camera/camera_model.hpp"
+#include "core/estimation/refine_status.hpp"
 #include "core/geometry/rigid.hpp"
 
 namespace voqcal {
-
-enum class RefineStatus { kConverged, kNotConverged, kDegenerate };
-std::string ToString(RefineStatus status);
 
 /// Minimised: sum of weight * huber(|pixel error|^2) over the centre and the four outline corners
 /// of each pose. The centre is the lidar's best measured point (the errors of opposite edges

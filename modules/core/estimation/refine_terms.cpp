@@ -1,6 +1,6 @@
 #include "core/estimation/refine_terms.hpp"
 
-#include "core/estimation/half_turn.hpp"
+#include "core/board/half_turn.hpp"
 #include "core/estimation/left_perturbation.hpp"
 
 namespace voqcal {

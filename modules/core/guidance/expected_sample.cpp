@@ -8,8 +8,8 @@
 #include <Eigen/Cholesky>
 
 #include "core/estimation/left_perturbation.hpp"
-#include "core/estimation/lidar_bias.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/likelihood/lidar_bias.hpp"
 #include "core/problems.hpp"
 
 namespace voqcal {

@@ -7,8 +7,8 @@
 
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
-#include "core/board/lidar_board.hpp"
 #include "core/camera/camera_model.hpp"
+#include "core/lidar_detection/lidar_board.hpp"
 
 namespace voqcal {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/estimation/consider_covariance.hpp"
-#include "core/estimation/likelihood_search.hpp"
 #include "core/guidance/expected_sample.hpp"
+#include "core/likelihood/consider_covariance.hpp"
+#include "core/likelihood/likelihood_search.hpp"
 
 namespace voqcal {
 namespace {

@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 
 #include "core/board/board_sample.hpp"
-#include "core/estimation/likelihood.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/likelihood/likelihood.hpp"
 
 namespace voqcal {
 

@@ -10,11 +10,11 @@
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
-#include "core/estimation/likelihood.hpp"
 #include "core/guidance/expected_sample.hpp"
 #include "core/guidance/extrinsic_information.hpp"
 #include "core/guidance/placement.hpp"
 #include "core/guidance/worst_error.hpp"
+#include "core/likelihood/likelihood.hpp"
 
 namespace voqcal {
 

@@ -5,8 +5,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/board/metres_per_pixel.hpp"
 #include "core/estimation/left_perturbation.hpp"
-#include "core/estimation/metres_per_pixel.hpp"
 
 namespace voqcal {
 namespace {

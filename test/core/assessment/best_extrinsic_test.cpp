@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/estimation/consistency.hpp"
+#include "core/selection/consistency.hpp"
 #include "support/synthetic_sweeps.hpp"
 
 namespace voqcal {

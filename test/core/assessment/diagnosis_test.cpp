@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/board/planar_pose.hpp"
+#include "core/camera_detection/planar_pose.hpp"
 #include "core/estimation/refine.hpp"
 #include "support/synthetic_samples.hpp"
 

@@ -8,12 +8,12 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/assessment/scores.hpp"
-#include "core/board/camera_board.hpp"
-#include "core/board/lidar_board.hpp"
+#include "core/camera_detection/camera_board.hpp"
 #include "core/estimation/average.hpp"
-#include "core/estimation/consistency.hpp"
+#include "core/lidar_detection/lidar_board.hpp"
+#include "core/selection/consistency.hpp"
 #include "core/selection/voq.hpp"
-#include "rig/poses_csv.hpp"
+#include "result/poses_csv.hpp"
 #include "support/real_data.hpp"
 #include "support/real_sweeps.hpp"
 #include "support/synthetic_samples.hpp"

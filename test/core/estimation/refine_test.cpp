@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/estimation/half_turn.hpp"
+#include "core/board/half_turn.hpp"
 #include "core/estimation/refine_terms.hpp"
 #include "support/matchers.hpp"
 #include "support/synthetic_samples.hpp"

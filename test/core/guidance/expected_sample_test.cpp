@@ -5,10 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/board/lidar_board.hpp"
-#include "core/board/planar_pose.hpp"
+#include "core/camera_detection/planar_pose.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/guidance/placement.hpp"
+#include "core/lidar_detection/lidar_board.hpp"
 #include "core/simulation/lidar_simulator.hpp"
 #include "support/synthetic_samples.hpp"
 

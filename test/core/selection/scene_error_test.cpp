@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/estimation/metres_per_pixel.hpp"
+#include "core/board/metres_per_pixel.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal {

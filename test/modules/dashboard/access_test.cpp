@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace voqcal {

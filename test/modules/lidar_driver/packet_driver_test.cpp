@@ -5,11 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/estimation/lidar_bias.hpp"
+#include "core/likelihood/lidar_bias.hpp"
 #include "lidar_driver/lidar_driver_node.hpp"
 #include "messaging/convert_points.hpp"
 #include "modules/nodes/node_test.hpp"
-#include "rig/lidar_bias_yaml.hpp"
+#include "result/lidar_bias_yaml.hpp"
 #include "support/pcap_file.hpp"
 #include "support/spectrum_packet.hpp"
 #include "support/temporary_folder.hpp"

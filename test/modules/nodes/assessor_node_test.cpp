@@ -8,8 +8,8 @@
 
 #include "extrinsic_estimator/extrinsic_estimator_node.hpp"
 #include "extrinsic_refiner/extrinsic_refiner_node.hpp"
+#include "files/atomic_file.hpp"
 #include "modules/nodes/chain_test.hpp"
-#include "rig/atomic_file.hpp"
 #include "support/matchers.hpp"
 #include "support/temporary_folder.hpp"
 #include "voq_selector/voq_selector_node.hpp"

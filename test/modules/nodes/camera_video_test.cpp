@@ -9,9 +9,9 @@
 
 #include "camera_driver/camera_driver_node.hpp"
 #include "camera_driver/capture_clock.hpp"
+#include "files/atomic_file.hpp"
 #include "messaging/convert_image.hpp"
 #include "modules/nodes/node_test.hpp"
-#include "rig/atomic_file.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_cameras.hpp"
 

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rig/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 #include "support/matchers.hpp"
 #include "support/simulated_log.hpp"
 #include "support/synthetic_samples.hpp"

@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "files/sha256.hpp"
 #include "modules/nodes/node_test.hpp"
-#include "rig/sha256.hpp"
 #include "support/sightings.hpp"
 #include "support/temporary_folder.hpp"
 #include "voqcal/event_t.hpp"

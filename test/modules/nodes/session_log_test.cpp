@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "core/board/board_sample.hpp"
-#include "rig/atomic_file.hpp"
-#include "rig/sha256.hpp"
+#include "files/atomic_file.hpp"
+#include "files/sha256.hpp"
 #include "support/synthetic_samples.hpp"
 #include "support/temporary_folder.hpp"
 

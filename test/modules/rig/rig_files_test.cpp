@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "rig/atomic_file.hpp"
-#include "rig/number_text.hpp"
+#include "files/atomic_file.hpp"
+#include "files/number_text.hpp"
+#include "files/yaml_reader.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_sections.hpp"
-#include "rig/yaml_reader.hpp"
 
 namespace voqcal {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rig/sha256.hpp"
+#include "files/sha256.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace voqcal {

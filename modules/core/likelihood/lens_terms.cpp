@@ -1,0 +1,88 @@
+#include "core/likelihood/lens_terms.hpp"
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "core/estimation/left_perturbation.hpp"
+
+namespace voqcal {
+namespace {
+
+using Matrix2Ld = Eigen::Matrix<double, 2, kNumLensErrors>;
+
+std::vector<std::size_t> SeenCorners(const BoardSample& sample, std::size_t num_corners) {
+  std::vector<std::size_t> seen;
+  if (sample.camera.corners_px.size() != num_corners) return seen;
+  for (std::size_t i = 0; i < num_corners; ++i) {
+    if (sample.camera.corners_px[i].allFinite()) seen.push_back(i);
+  }
+  return seen;
+}
+
+// A pixel is linear in each error alone, so that central differences are exact but for rounding.
+Matrix2Ld PixelByLens(const CameraModel& camera, const Eigen::Vector3d& point_camera_m) {
+  constexpr double kStep = 1e-3;
+  Matrix2Ld by_lens;
+  for (Eigen::Index i = 0; i < kNumLensErrors; ++i) {
+    const LensErrors step = kStep * LensErrors::Unit(i);
+    by_lens.col(i) = (CorrectedCamera(camera, step).Project(point_camera_m) -
+                      CorrectedCamera(camera, -step).Project(point_camera_m)) /
+                     (2 * kStep);
+  }
+  return by_lens;
+}
+
+}  // namespace
+
+LensTerms LensTermsOf(const BoardSample& sample,
+                      const BoardSpec& board,
+                      const CameraModel& camera,
+                      double corner_error_px) {
+  LensTerms terms;
+  terms.board_by_lens.setZero(6, kNumLensErrors);
+  terms.information.setZero(kNumLensErrors, kNumLensErrors);
+  terms.pull.setZero(kNumLensErrors);
+  const std::vector<Eigen::Vector3d> corners_board_m = board.InnerCornersBoardM();
+  const std::vector<std::size_t> seen = SeenCorners(sample, corners_board_m.size());
+  if (seen.empty()) return terms;
+  const Eigen::Isometry3d T_camera_board = TransformFromPose(sample.camera.pose);
+  const auto num_rows = 2 * static_cast<Eigen::Index>(seen.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 6> J(num_rows, 6);
+  Eigen::Matrix<double, Eigen::Dynamic, kNumLensErrors> L(num_rows, kNumLensErrors);
+  Eigen::VectorXd e(num_rows);
+  Eigen::Index row = 0;
+  for (const std::size_t i : seen) {
+    const Eigen::Vector3d arm_m = T_camera_board.linear() * corners_board_m[i];
+    const Eigen::Vector3d point_m = T_camera_board.translation() + arm_m;
+    Matrix23d J_px_point;
+    Matrix36d J_point;
+    J_point << -Skew(arm_m), Eigen::Matrix3d::Identity();
+    e.segment<2>(row) =
+        ProjectWithJacobian(camera, point_m, &J_px_point) - sample.camera.corners_px[i];
+    J.middleRows<2>(row) = J_px_point * J_point;
+    L.middleRows<2>(row) = PixelByLens(camera, point_m);
+    row += 2;
+  }
+  const Matrix6d of_board = J.transpose() * J;
+  terms.board_by_lens = -of_board.ldlt().solve(J.transpose() * L);
+  const Eigen::MatrixXd left = L + J * terms.board_by_lens;
+  const double weight = 1.0 / (corner_error_px * corner_error_px);
+  terms.information = weight * left.transpose() * left;
+  terms.pull = -weight * left.transpose() * e;
+  return terms;
+}
+
+BoardPose CorrectedCameraPose(const BoardSample& sample,
+                              const BoardSpec& board,
+                              const CameraModel& camera,
+                              const LensErrors& errors) {
+  const LensTerms terms = LensTermsOf(sample, board, camera, /*corner_error_px=*/1.0);
+  BoardPose pose = PoseFromTransform(
+      PerturbLeft(TransformFromPose(sample.camera.pose), terms.board_by_lens * errors), board);
+  pose.covariance = sample.camera.pose.covariance;
+  return pose;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,209 @@
+#include "core/likelihood/likelihood.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/likelihood/likelihood_search.hpp"
+#include "core/likelihood/likelihood_uncertainty.hpp"
+#include "core/problems.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr std::size_t kMinSamples = 3;
+
+// Radians or metres.
+constexpr double kSettled = 1e-9;
+constexpr double kSettledNearby = 1e-6;  // far below what a score tells
+
+LidarBias BiasOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covariance) {
+  const auto estimate = [&](Eigen::Index fault) {
+    const Eigen::Index i = kExtrinsicSize + fault;
+    return BiasEstimate{
+        search.state().faults_m[fault], std::sqrt(covariance(i, i)), search.IsFree(fault)};
+  };
+  LidarBias bias;
+  bias.common = estimate(kCommon);
+  bias.dark_step = estimate(kDarkStep);
+  bias.outline_lift = estimate(kLift);
+  bias.outline_rise = estimate(kRise);
+  for (Eigen::Index i = 0; i < search.state().NumRings(); ++i) {
+    bias.rings.push_back(estimate(kFirstRing + i));
+  }
+  return bias;
+}
+
+LensEstimate LensOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covariance) {
+  const Eigen::Index num_lens = search.state().num_lens;
+  LensEstimate lens;
+  if (num_lens == 0) return lens;
+  lens.errors = search.state().faults_m.tail(num_lens);
+  lens.standard_errors = covariance.diagonal().tail(num_lens).cwiseSqrt();
+  for (Eigen::Index i = 0; i < num_lens; ++i) {
+    lens.is_observable[static_cast<std::size_t>(i)] =
+        search.IsFree(kFirstRing + search.state().NumRings() + i);
+  }
+  return lens;
+}
+
+void AddResiduals(const LikelihoodSearch& search, LikelihoodExtrinsic* refined) {
+  double sum_range_m2 = 0.0;
+  double sum_across_m2 = 0.0;
+  for (std::size_t i = 0; i < search.poses().size(); ++i) {
+    const BoardAndLidar at = search.state().At(i);
+    const LikelihoodPose& pose = search.poses()[i];
+    for (const BoardReturn& seen : pose.returns) {
+      const double residual_m = seen.range_m - search.state().OffsetM(seen) -
+                                RangeToBoardM(at, seen.direction_lidar, nullptr);
+      sum_range_m2 += residual_m * residual_m;
+      ++refined->num_returns;
+    }
+    sum_across_m2 += OutlineResidual(at, pose.outline, search.state().LiftM(pose.outline), nullptr)
+                         .head<2>()
+                         .squaredNorm();
+  }
+  refined->across_rms_m = std::sqrt(sum_across_m2 / static_cast<double>(search.poses().size()));
+  if (refined->num_returns == 0) return;
+  refined->range_rms_m = std::sqrt(sum_range_m2 / refined->num_returns);
+}
+
+std::vector<LikelihoodPose> PosesOf(const std::vector<const BoardSample*>& samples,
+                                    const ShadeScale& shades,
+                                    const Eigen::Isometry3d& T_camera_lidar) {
+  std::vector<LikelihoodPose> poses;
+  for (const BoardSample* sample : samples) {
+    poses.push_back(MakeLikelihoodPose(*sample, shades, T_camera_lidar));
+  }
+  return poses;
+}
+
+std::vector<LikelihoodPose> PosesWithLens(const std::vector<const BoardSample*>& samples,
+                                          const BoardSpec& board,
+                                          const CameraModel& camera,
+                                          const ShadeScale& shades,
+                                          const Eigen::Isometry3d& T_camera_lidar,
+                                          const LikelihoodOptions& options) {
+  std::vector<LikelihoodPose> poses = PosesOf(samples, shades, T_camera_lidar);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    poses[i].lens = LensTermsOf(*samples[i], board, camera, options.corner_error_px);
+  }
+  return poses;
+}
+
+LikelihoodExtrinsic RefinePoses(std::vector<LikelihoodPose> poses,
+                                const ShadeScale& shades,
+                                const CameraModel& camera,
+                                const Eigen::Isometry3d& T_camera_lidar_start,
+                                const LikelihoodOptions& options) {
+  constexpr int kNoiseRounds = 4;    // levels settle to a percent in three...
+  constexpr int kStepsPerRound = 4;  // ...and do not need the minimum to the last digit
+  LikelihoodExtrinsic refined;
+  refined.T_camera_lidar = T_camera_lidar_start;
+  refined.status = RefineStatus::kDegenerate;
+  if (poses.size() < kMinSamples) return refined;
+
+  LikelihoodSearch search(std::move(poses), T_camera_lidar_start, options);
+  for (int round = 0; round < kNoiseRounds; ++round) {
+    search.Minimise(kStepsPerRound, kSettled);
+    const Eigen::MatrixXd covariance = search.CovarianceAllFree();
+    if (covariance.size() == 0) return refined;
+    search.HoldUnobservable(covariance);
+    search.UpdateNoise();
+  }
+  refined.status = RefineStatus::kNotConverged;
+  if (!search.Minimise(options.max_iterations, kSettled) || !search.IsPhysical()) return refined;
+  if (search.CovarianceAllFree().size() == 0) {
+    refined.status = RefineStatus::kDegenerate;
+    return refined;
+  }
+  const SharedEquations equations = search.Equations();
+  const Eigen::MatrixXd covariance = search.Covariance(equations);
+  refined.T_camera_lidar = search.state().T_camera_lidar;
+  refined.uncertainty = UncertaintyOf(search, equations, camera, options);
+  refined.bias = BiasOf(search, covariance);
+  refined.bias.shades = shades;
+  refined.lens = LensOf(search, covariance);
+  refined.noise = search.noise();
+  AddResiduals(search, &refined);
+  refined.status = RefineStatus::kConverged;
+  return refined;
+}
+
+LikelihoodExtrinsic RefinePosesNearby(std::vector<LikelihoodPose> poses,
+                                      const LikelihoodExtrinsic& nearby,
+                                      const LikelihoodOptions& options) {
+  LikelihoodExtrinsic refined = nearby;
+  refined.status = RefineStatus::kDegenerate;
+  if (poses.size() < kMinSamples) return refined;
+  LikelihoodSearch search(std::move(poses), nearby.T_camera_lidar, options);
+  search.StartFrom(nearby.bias, nearby.lens, nearby.noise);
+  refined.status = RefineStatus::kNotConverged;
+  if (!search.Minimise(options.max_iterations, kSettledNearby)) return refined;
+  if (!search.IsPhysical()) return refined;
+  const LikelihoodState& state = search.state();
+  refined.T_camera_lidar = state.T_camera_lidar;
+  refined.bias.common.value_m = state.faults_m[kCommon];
+  refined.bias.dark_step.value_m = state.faults_m[kDarkStep];
+  refined.bias.outline_lift.value_m = state.faults_m[kLift];
+  refined.bias.outline_rise.value_m = state.faults_m[kRise];
+  const auto num_rings =
+      std::min(state.NumRings(), static_cast<Eigen::Index>(nearby.bias.rings.size()));
+  for (Eigen::Index i = 0; i < num_rings; ++i) {
+    refined.bias.rings[static_cast<std::size_t>(i)].value_m = state.faults_m[kFirstRing + i];
+  }
+  if (state.num_lens > 0) refined.lens.errors = state.faults_m.tail(state.num_lens);
+  refined.status = RefineStatus::kConverged;
+  return refined;
+}
+
+}  // namespace
+
+LikelihoodExtrinsic RefineByLikelihood(const std::vector<const BoardSample*>& samples,
+                                       const CameraModel& camera,
+                                       const Eigen::Isometry3d& T_camera_lidar_start,
+                                       const LikelihoodOptions& options) {
+  RequireUsable("LikelihoodOptions", options.Problems());
+  const ShadeScale shades = MakeShadeScale(samples);
+  return RefinePoses(PosesOf(samples, shades, T_camera_lidar_start),
+                     shades,
+                     camera,
+                     T_camera_lidar_start,
+                     options);
+}
+
+LikelihoodExtrinsic RefineNearby(const std::vector<const BoardSample*>& samples,
+                                 const LikelihoodExtrinsic& nearby,
+                                 const LikelihoodOptions& options) {
+  RequireUsable("LikelihoodOptions", options.Problems());
+  return RefinePosesNearby(
+      PosesOf(samples, nearby.bias.shades, nearby.T_camera_lidar), nearby, options);
+}
+
+LikelihoodExtrinsic RefineWithLens(const std::vector<const BoardSample*>& samples,
+                                   const BoardSpec& board,
+                                   const CameraModel& camera,
+                                   const Eigen::Isometry3d& T_camera_lidar_start,
+                                   const LikelihoodOptions& options) {
+  RequireUsable("LikelihoodOptions", options.Problems());
+  const ShadeScale shades = MakeShadeScale(samples);
+  return RefinePoses(PosesWithLens(samples, board, camera, shades, T_camera_lidar_start, options),
+                     shades,
+                     camera,
+                     T_camera_lidar_start,
+                     options);
+}
+
+LikelihoodExtrinsic RefineWithLensNearby(const std::vector<const BoardSample*>& samples,
+                                         const BoardSpec& board,
+                                         const CameraModel& camera,
+                                         const LikelihoodExtrinsic& nearby,
+                                         const LikelihoodOptions& options) {
+  RequireUsable("LikelihoodOptions", options.Problems());
+  return RefinePosesNearby(
+      PosesWithLens(samples, board, camera, nearby.bias.shades, nearby.T_camera_lidar, options),
+      nearby,
+      options);
+}
+
+}  // namespace voqcal

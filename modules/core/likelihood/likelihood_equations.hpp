@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "core/likelihood/likelihood_estimate.hpp"
+#include "core/likelihood/likelihood_options.hpp"
+#include "core/likelihood/likelihood_terms.hpp"
+
+namespace voqcal {
+
+/// The shared unknowns: [extrinsic's perturbation (6); faults]. The faults in their order, after
+/// the rings the lens' errors if they are estimated:
+constexpr Eigen::Index kExtrinsicSize = 6;
+constexpr Eigen::Index kCommon = 0;
+constexpr Eigen::Index kDarkStep = 1;
+constexpr Eigen::Index kLift = 2;
+constexpr Eigen::Index kRise = 3;
+constexpr Eigen::Index kFirstRing = 4;
+
+/// Where the search stands.
+struct LikelihoodState {
+  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
+  Eigen::VectorXd faults_m;   ///< The rise: metres a metre; the lens' errors: shares.
+  Eigen::Index num_lens = 0;  ///< How many of the faults are the lens' errors.
+  std::vector<Eigen::Isometry3d> T_camera_board;
+
+  Eigen::Index NumRings() const { return faults_m.size() - kFirstRing - num_lens; }
+  /// Where the chessboard's pixels put the board, with the lens as it is.
+  Eigen::Isometry3d ByChessboard(const LikelihoodPose& pose) const {
+    if (num_lens == 0) return pose.T_camera_board;
+    return PerturbLeft(pose.T_camera_board, pose.lens.board_by_lens * faults_m.tail(num_lens));
+  }
+  double OffsetM(const BoardReturn& seen) const {
+    return faults_m[kCommon] + faults_m[kDarkStep] * seen.shade +
+           faults_m[kFirstRing + static_cast<Eigen::Index>(seen.ring)];
+  }
+  double LiftM(const OutlineRays& outline) const {
+    return faults_m[kLift] + faults_m[kRise] * outline.T_lidar_board.translation().norm();
+  }
+  BoardAndLidar At(std::size_t pose) const { return {T_camera_lidar, T_camera_board[pose]}; }
+};
+
+constexpr Eigen::Index kBoardIndex = 6;  ///< Of a pose's unknowns: [extrinsic 6; board 6; faults].
+
+/// Gauss-Newton's equations of one pose.
+struct PoseEquations {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd pull;  ///< Minus the gradient.
+};
+
+/// What the returns of one pose say at `state`, with Cauchy weights, which give way to gross
+/// errors.
+PoseEquations EquationsOfReturns(const LikelihoodPose& pose,
+                                 const LikelihoodState& state,
+                                 std::size_t index,
+                                 double range_sigma_m);
+
+/// All that one pose says: returns, outline (with Cauchy weights too) and chessboard.
+PoseEquations EquationsOf(const LikelihoodPose& pose,
+                          const LikelihoodState& state,
+                          std::size_t index,
+                          const LikelihoodOptions& options,
+                          const LikelihoodNoise& noise);
+
+/// One pose with its board's unknowns eliminated (Schur complement).
+struct PoseShare {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd pull;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> to_board;  ///< Information, shared unknowns by board's.
+  Matrix6d board_covariance;                          ///< With the shared unknowns known.
+  Vector6d board_pull;
+
+  /// The step of the board's pose that follows from `shared_step`.
+  Vector6d BoardStep(const Eigen::VectorXd& shared_step) const;
+};
+
+/// The sum over all poses, without the faults' priors.
+struct SharedEquations {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd pull;
+  std::vector<PoseShare> poses;
+};
+SharedEquations Eliminate(const std::vector<LikelihoodPose>& poses,
+                          const LikelihoodState& state,
+                          const LikelihoodOptions& options,
+                          const LikelihoodNoise& noise);
+
+/// Expected covariances, model error included and scaled by the estimated noise.
+Matrix6d CameraCovariance(const LikelihoodPose& pose,
+                          const LikelihoodOptions& options,
+                          const LikelihoodNoise& noise);
+Eigen::Matrix3d OutlineCovariance(const LikelihoodPose& pose,
+                                  const LikelihoodOptions& options,
+                                  const LikelihoodNoise& noise);
+
+}  // namespace voqcal

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "core/camera/lens_errors.hpp"
+#include "core/estimation/refine_status.hpp"
+#include "core/geometry/rigid.hpp"
+#include "core/likelihood/lidar_bias.hpp"
+
+namespace voqcal {
+
+/// Noise levels that the residuals show; as they start, where there are no residuals.
+struct LikelihoodNoise {
+  double range_m = 0.01;        ///< 1 sigma of one return along its ray.
+  double outline_factor = 1.0;  ///< On the outline's expected 1 sigma.
+  double camera_factor = 1.0;   ///< On the chessboard's expected 1 sigma, lidar planes comparing.
+};
+
+/// How far the extrinsic may be off, 1 sigma of [rotation_rad; translation_m] perturbed on the left
+/// (camera side), by three ways of telling. Its covariance is the likelihood's, widened for each
+/// parameter to the largest.
+struct LikelihoodUncertainty {
+  /// The inverse information; faults that the data cannot tell count with their priors.
+  Vector6d by_likelihood = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /// By the poses' own variety (UncertaintyOf).
+  Vector6d by_resampling = by_likelihood;
+  /// Estimated again with lens and board in error.
+  Vector6d by_model_errors = by_likelihood;
+  Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+};
+
+/// Errors of the intrinsics that were given. What the data cannot tell stays zero.
+struct LensEstimate {
+  LensErrors errors = LensErrors::Zero();
+  LensErrors standard_errors = LensErrors::Constant(std::numeric_limits<double>::quiet_NaN());
+  std::array<bool, kNumLensErrors> is_observable{};  ///< As BiasEstimate's.
+
+  bool IsObservable() const;  ///< Any of them.
+};
+
+/// An extrinsic with the lidar's faults that came with it.
+struct LikelihoodExtrinsic {
+  /// Takes lidar coordinates to camera coordinates: p_camera = T_camera_lidar * p_lidar.
+  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
+  LikelihoodUncertainty uncertainty;
+  LidarBias bias;
+  LensEstimate lens;  ///< RefineWithLens'; the extrinsic then goes with the corrected camera.
+  LikelihoodNoise noise;
+  double range_rms_m = std::numeric_limits<double>::quiet_NaN();   ///< Of all returns.
+  double across_rms_m = std::numeric_limits<double>::quiet_NaN();  ///< Of the centres' rays.
+  int num_returns = 0;
+  RefineStatus status = RefineStatus::kNotConverged;
+
+  bool IsUsable() const { return status == RefineStatus::kConverged; }
+  std::string Summary() const;  ///< One line for a log.
+};
+
+}  // namespace voqcal

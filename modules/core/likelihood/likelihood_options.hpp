@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace voqcal {
+
+/// What is expected before the data speak. Model errors add to the detectors' covariances; how far
+/// to believe the sum is estimated from the data.
+struct LikelihoodOptions {
+  double common_prior_m = 0.03;     ///< 1 sigma of the offset common to all ranges.
+  double dark_step_prior_m = 0.03;  ///< 1 sigma of dark against bright surfaces.
+  double ring_prior_m = 0.015;      ///< 1 sigma of each scan line's own offset.
+  /// 1 sigma of an error of the outlines' height (along the lidar's z) that all sweeps share: scan
+  /// lines cut the outline coarsely, and always at the same elevations.
+  double outline_lift_prior_m = 0.001;
+  double outline_rise_prior = 0.0005;  ///< The same, growing with the range: metres a metre.
+  double outline_error_m = 0.001;      ///< 1 sigma of the outline fit's centre, beyond its noise.
+  double outline_error_rad = 0.003;    ///< 1 sigma of its turn in the plane.
+  double camera_error_m = 0.003;       ///< 1 sigma of the chessboard's depth, beyond its noise...
+  double camera_error_rad = 0.005;  ///< ...and of its tilt: the board bends, the lens model errs.
+  // Plausible errors of what was measured beforehand; a covariance smaller than their effect is
+  // widened to it.
+  double focal_length_error = 0.0003;     ///< 1 sigma, relative.
+  double principal_point_error_px = 0.2;  ///< 1 sigma in each direction.
+  double board_size_error = 0.0005;       ///< 1 sigma of a chessboard square, relative.
+  /// 1 sigma of each of the LensErrors, where they are estimated (RefineWithLens).
+  double lens_error = 0.005;
+  /// 1 sigma of a chessboard's corner there: more than its noise, as neighbours err alike.
+  double corner_error_px = 0.3;
+  int max_iterations = 50;
+
+  /// One line for each broken constraint, with its value; empty if the options are usable.
+  std::vector<std::string> Problems() const;
+};
+
+}  // namespace voqcal

@@ -1,0 +1,301 @@
+#include "core/sampling/sample_picker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <utility>
+
+#include "core/format.hpp"
+#include "core/geometry/rigid.hpp"
+#include "core/problems.hpp"
+#include "core/sampling/average_sightings.hpp"
+
+namespace voqcal {
+namespace {
+
+// A stream whose partner is silent is judged without it beyond this many frames: memory is bounded.
+constexpr std::size_t kMaxWaiting = 600;
+
+// Why the measured edges cannot be this board's; empty if they can.
+std::string EdgeProblem(const LidarBoard& lidar, const BoardSpec& board, double max_edge_error_m) {
+  const auto true_lengths_m = board.EdgeLengthsM();
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (std::abs(lidar.edge_lengths_m[i] - true_lengths_m[i]) <= max_edge_error_m) continue;
+    return Format("the lidar measures an edge of %.3f m as %.3f m",
+                  true_lengths_m[i],
+                  lidar.edge_lengths_m[i]);
+  }
+  return {};
+}
+
+std::vector<PickerDecision> Joined(std::vector<PickerDecision> first,
+                                   const std::vector<PickerDecision>& then) {
+  first.insert(first.end(), then.begin(), then.end());
+  return first;
+}
+
+std::vector<LidarBoard> CandidatesOf(const LidarSighting& sighting) {
+  std::vector<LidarBoard> candidates = sighting.runners_up;
+  candidates.insert(candidates.begin(), *sighting.board);
+  return candidates;
+}
+
+// Leaves only the candidates that can be this board. @return why the first cannot, if none is left.
+std::string DropWrongSizes(const BoardSpec& board, double max_edge_error_m, LidarSighting* lidar) {
+  std::vector<LidarBoard> candidates = CandidatesOf(*lidar);
+  const std::string problem = EdgeProblem(candidates.front(), board, max_edge_error_m);
+  candidates.erase(std::remove_if(candidates.begin(),
+                                  candidates.end(),
+                                  [&](const LidarBoard& candidate) {
+                                    return !EdgeProblem(candidate, board, max_edge_error_m).empty();
+                                  }),
+                   candidates.end());
+  if (candidates.empty()) return problem;
+  lidar->board = candidates.front();
+  lidar->runners_up.assign(candidates.begin() + 1, candidates.end());
+  return {};
+}
+
+// The candidate of that frame whose centre is nearest; null if none lies within reach.
+const LidarBoard* FoundAgain(const LidarBoard& board, const LidarSighting& frame, double reach_m) {
+  const LidarBoard* nearest = nullptr;
+  const auto consider = [&](const LidarBoard& candidate) {
+    const double distance_m = (candidate.pose.centre_m - board.pose.centre_m).norm();
+    if (distance_m > reach_m) return;
+    reach_m = distance_m;
+    nearest = &candidate;
+  };
+  for (const LidarBoard& candidate : frame.runners_up) consider(candidate);
+  consider(*frame.board);
+  return nearest;
+}
+
+double LargestCornerMotionPx(const CameraBoard& a, const CameraBoard& b) {
+  if (a.corners_px.size() != b.corners_px.size()) return std::numeric_limits<double>::infinity();
+  double same_px = 0;
+  double turned_px = 0;  // the detector took the other half-turn
+  const std::size_t n = a.corners_px.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    same_px = std::max(same_px, (a.corners_px[i] - b.corners_px[i]).norm());
+    turned_px = std::max(turned_px, (a.corners_px[i] - b.corners_px[n - 1 - i]).norm());
+  }
+  return std::min(same_px, turned_px);
+}
+
+}  // namespace
+
+std::vector<std::string> SamplePickerOptions::Problems() const {
+  ProblemList problems;
+  problems.Require(
+      max_pair_offset_s >= 0, "max_pair_offset_s must not be negative", max_pair_offset_s);
+  problems.Require(num_still_frames >= 1, "num_still_frames must be at least 1", num_still_frames);
+  problems.RequirePositive("max_still_motion_m", max_still_motion_m);
+  problems.RequirePositive("max_still_motion_px", max_still_motion_px);
+  problems.Require(
+      min_new_distance_m >= 0, "min_new_distance_m must not be negative", min_new_distance_m);
+  problems.Require(
+      min_new_angle_rad >= 0, "min_new_angle_rad must not be negative", min_new_angle_rad);
+  problems.RequirePositive("max_edge_error_m", max_edge_error_m);
+  problems.Require(max_candidates >= 1, "max_candidates must be at least 1", max_candidates);
+  return problems.lines();
+}
+
+SamplePicker::SamplePicker(const BoardSpec& board, const SamplePickerOptions& options)
+    : board_(board),
+      options_(options),
+      max_pair_offset_us_(std::llround(options.max_pair_offset_s * 1e6)),
+      newest_lidar_utime_(std::numeric_limits<std::int64_t>::min()),
+      newest_camera_utime_(std::numeric_limits<std::int64_t>::min()) {
+  RequireUsable("SamplePickerOptions", options.Problems());
+}
+
+std::vector<PickerDecision> SamplePicker::Add(const LidarSighting& sighting) {
+  std::vector<PickerDecision> decisions = RestartIfBack(sighting.utime, newest_lidar_utime_);
+  if (sighting.utime <= newest_lidar_utime_) {
+    decisions.push_back({sighting.utime, {}, "lidar frame out of order"});
+    return decisions;
+  }
+  newest_lidar_utime_ = sighting.utime;
+  lidar_.push_back(sighting);
+  return Joined(std::move(decisions), Judge(false));
+}
+
+std::vector<PickerDecision> SamplePicker::Add(const CameraSighting& sighting) {
+  std::vector<PickerDecision> decisions = RestartIfBack(sighting.utime, newest_camera_utime_);
+  if (sighting.utime <= newest_camera_utime_) {
+    decisions.push_back({sighting.utime, {}, "camera frame out of order"});
+    return decisions;
+  }
+  newest_camera_utime_ = sighting.utime;
+  camera_.push_back(sighting);
+  return Joined(std::move(decisions), Judge(false));
+}
+
+// A driver that was started again on a folder or a capture, or a clock that was set: what waits is
+// judged, and time begins anew for both sensors.
+std::vector<PickerDecision> SamplePicker::RestartIfBack(std::int64_t utime, std::int64_t newest) {
+  constexpr double kMaxOutOfOrderUs = 2e6;  // networks reorder by less
+  if (static_cast<double>(newest) - static_cast<double>(utime) <= kMaxOutOfOrderUs) return {};
+  std::vector<PickerDecision> decisions = Judge(true);
+  window_.clear();
+  newest_lidar_utime_ = newest_camera_utime_ = std::numeric_limits<std::int64_t>::min();
+  return decisions;
+}
+
+std::vector<PickerDecision> SamplePicker::Flush() { return Judge(true); }
+
+void SamplePicker::SetKnown(const std::vector<BoardSample>& samples) {
+  known_T_camera_board_.clear();
+  for (const BoardSample& sample : samples) {
+    known_T_camera_board_.push_back(TransformFromPose(sample.camera.pose));
+  }
+}
+
+int SamplePicker::NearestCameraFrame(std::int64_t utime) const {
+  int nearest = -1;
+  std::int64_t least_us = max_pair_offset_us_ + 1;
+  for (std::size_t i = 0; i < camera_.size(); ++i) {
+    const std::int64_t offset_us = std::abs(camera_[i].utime - utime);
+    if (offset_us >= least_us) continue;
+    least_us = offset_us;
+    nearest = static_cast<int>(i);
+  }
+  return nearest;
+}
+
+std::vector<PickerDecision> SamplePicker::Judge(bool is_flushing) {
+  std::vector<PickerDecision> decisions;
+  while (!lidar_.empty()) {
+    const bool has_camera_passed =
+        newest_camera_utime_ >= lidar_.front().utime + max_pair_offset_us_;
+    if (!has_camera_passed && !is_flushing && lidar_.size() <= kMaxWaiting) break;
+    const LidarSighting lidar = lidar_.front();
+    lidar_.pop_front();
+    const int partner = NearestCameraFrame(lidar.utime);
+    if (partner < 0) {
+      decisions.push_back({lidar.utime, {}, "no camera frame at that time"});
+      continue;
+    }
+    // Camera frames before the partner can have no lidar frame any more.
+    for (int i = 0; i < partner; ++i) decisions.push_back(DropCameraFrame());
+    const CameraSighting camera = camera_.front();
+    camera_.pop_front();
+    decisions.push_back(JudgePair({lidar, camera}));
+  }
+  // What no lidar frame can claim: those that are waiting, or still to come, are too late for it.
+  while (!camera_.empty()) {
+    const std::int64_t next_lidar_utime =
+        lidar_.empty() ? newest_lidar_utime_ : lidar_.front().utime;
+    const bool is_unclaimed = camera_.front().utime + max_pair_offset_us_ < next_lidar_utime;
+    if (!is_unclaimed && !is_flushing && camera_.size() <= kMaxWaiting) break;
+    decisions.push_back(DropCameraFrame());
+  }
+  return decisions;
+}
+
+PickerDecision SamplePicker::DropCameraFrame() {
+  const std::int64_t utime = camera_.front().utime;
+  camera_.pop_front();
+  return {utime, {}, "no lidar frame at that time"};
+}
+
+PickerDecision SamplePicker::JudgePair(Pair pair) {
+  const auto reject = [this, &pair](const std::string& reason, const std::string& detail = "") {
+    window_.clear();
+    return PickerDecision{pair.lidar.utime, {}, reason, detail};
+  };
+  if (!pair.lidar.board) return reject("lidar: " + pair.lidar.miss);
+  if (!pair.camera.board) return reject("camera: " + pair.camera.miss);
+  const std::string edge_problem = DropWrongSizes(board_, options_.max_edge_error_m, &pair.lidar);
+  if (!edge_problem.empty()) return reject("wrong board size", edge_problem);
+
+  if (is_capture_requested_) {
+    is_capture_requested_ = false;
+    window_.clear();
+    BoardSample sample =
+        MakeSample(CandidatesOf(pair.lidar), {*pair.camera.board}, pair.lidar.utime);
+    sample.camera_utime = pair.camera.utime;
+    known_T_camera_board_.push_back(TransformFromPose(sample.camera.pose));
+    return {pair.lidar.utime, std::move(sample), {}};
+  }
+
+  const std::string motion = Motion(pair);
+  if (!motion.empty()) window_.clear();
+  window_.push_back(pair);
+  if (static_cast<int>(window_.size()) < options_.num_still_frames) {
+    return {pair.lidar.utime, {}, motion.empty() ? "not yet still for long enough" : motion};
+  }
+  return JudgeWindow();
+}
+
+// What the newest frame ranks first must have been there before, whatever its rank was then.
+std::string SamplePicker::Motion(const Pair& pair) const {
+  for (const Pair& earlier : window_) {
+    const bool is_found =
+        FoundAgain(*pair.lidar.board, earlier.lidar, options_.max_still_motion_m) != nullptr;
+    if (!is_found || LargestCornerMotionPx(*pair.camera.board, *earlier.camera.board) >
+                         options_.max_still_motion_px) {
+      return "board is moving";
+    }
+  }
+  return {};
+}
+
+std::vector<LidarBoard> SamplePicker::RestingCandidates() const {
+  std::vector<LidarBoard> resting;
+  for (const LidarBoard& candidate : CandidatesOf(window_.back().lidar)) {
+    std::vector<LidarBoard> track;
+    for (const Pair& pair : window_) {
+      const LidarBoard* found = FoundAgain(candidate, pair.lidar, options_.max_still_motion_m);
+      if (found != nullptr) track.push_back(*found);
+    }
+    if (track.size() == window_.size()) resting.push_back(MeanLidarBoard(track, board_));
+  }
+  std::stable_sort(resting.begin(), resting.end(), [](const LidarBoard& a, const LidarBoard& b) {
+    return a.log_likelihood > b.log_likelihood;
+  });
+  return resting;
+}
+
+BoardSample SamplePicker::MakeSample(std::vector<LidarBoard> candidates,
+                                     const std::vector<CameraBoard>& camera,
+                                     std::int64_t utime) const {
+  const auto num_kept =
+      std::min(candidates.size(), static_cast<std::size_t>(options_.max_candidates));
+  BoardSample sample;
+  sample.utime = utime;
+  sample.num_frames = static_cast<int>(camera.size());
+  sample.camera = MeanCameraBoard(camera, board_);
+  sample.lidar = candidates.front();
+  sample.runners_up.assign(candidates.begin() + 1,
+                           candidates.begin() + static_cast<std::ptrdiff_t>(num_kept));
+  return sample;
+}
+
+PickerDecision SamplePicker::JudgeWindow() {
+  std::vector<CameraBoard> camera;
+  for (const Pair& pair : window_) camera.push_back(*pair.camera.board);
+  const std::int64_t utime = window_.front().lidar.utime;
+  BoardSample sample = MakeSample(RestingCandidates(), camera, utime);
+  sample.camera_utime = window_.front().camera.utime;
+  window_.erase(window_.begin());  // the next pair may complete a new window
+  if (!IsNew(sample)) return {utime, {}, "pose is not new"};
+  known_T_camera_board_.push_back(TransformFromPose(sample.camera.pose));
+  return {utime, std::move(sample), {}};
+}
+
+bool SamplePicker::IsNew(const BoardSample& sample) const {
+  const Eigen::Isometry3d T_camera_board = TransformFromPose(sample.camera.pose);
+  const Eigen::Isometry3d T_turned = TransformFromPose(TurnedByHalf(sample.camera.pose));
+  return std::none_of(
+      known_T_camera_board_.begin(), known_T_camera_board_.end(), [&](const auto& T_known) {
+        const double distance_m = (T_known.translation() - T_camera_board.translation()).norm();
+        const double angle_rad =
+            std::min(RotationAngleBetween(T_known.linear(), T_camera_board.linear()),
+                     RotationAngleBetween(T_known.linear(), T_turned.linear()));
+        return distance_m < options_.min_new_distance_m && angle_rad < options_.min_new_angle_rad;
+      });
+}
+
+}  // namespace voqcal

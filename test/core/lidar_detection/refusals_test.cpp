@@ -1,0 +1,238 @@
+// What the detector says of boards that it must not take, and of sweeps that are none.
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "core/lidar_detection/lidar_board.hpp"
+#include "support/synthetic_lidar_board.hpp"
+
+namespace voqcal {
+namespace {
+
+using test::FacingBoard;
+using test::SynthesizeLidarBoard;
+using test::SyntheticBox;
+using test::SyntheticLidarBoardOptions;
+
+const BoardSpec kBoard = SyntheticLidarBoardOptions().board;
+
+std::string VerdictOn(const PointCloud& cloud) {
+  const auto found = DetectLidarBoard(cloud, kBoard, {});
+  return found ? "found" : ToString(found.error());
+}
+
+SyntheticLidarBoardOptions UprightBoard() {
+  SyntheticLidarBoardOptions scene;
+  scene.noise_m = 0.01;
+  scene.T_lidar_board = FacingBoard({2.3, 0.0, 0.0}, 0.0);
+  return scene;
+}
+
+/// At half the board's distance, so that it hides twice its size.
+SyntheticBox Pillar(double y_m, double half_width_m) {
+  SyntheticBox box;
+  box.T_lidar_box.translation() = Eigen::Vector3d(1.15, y_m, 0.0);
+  box.half_m = {0.02, half_width_m, 0.6};
+  return box;
+}
+
+TEST(LidarBoardVerdict, HiddenSideIsNamed) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  EXPECT_EQ("found", VerdictOn(SynthesizeLidarBoard(scene)));
+  scene.boxes.push_back(Pillar(0.3, 0.28));  // from y = 0.02 m, 0.04 m on the board, to the left
+  EXPECT_EQ("outline open: something stands before it on the left",
+            VerdictOn(SynthesizeLidarBoard(scene)));
+  scene.boxes.back() = Pillar(-0.3, 0.25);
+  EXPECT_EQ("outline open: something stands before it on the right",
+            VerdictOn(SynthesizeLidarBoard(scene)));
+}
+
+TEST(LidarBoardVerdict, EndOfTheFieldOfViewIsNamed) {
+  const PointCloud whole = SynthesizeLidarBoard(UprightBoard());
+  PointCloud cut = whole;
+  cut.points.clear();
+  for (const LidarPoint& point : whole.points) {
+    // A sensor that sees no farther to the left than 0.1 m from the board's middle.
+    if (point.position_m.y() < 0.1F / 2.3F * point.position_m.x()) cut.points.push_back(point);
+  }
+  EXPECT_EQ("outline open: the field of view ends on the left", VerdictOn(cut));
+}
+
+/// Without the beams that meet the plane at x = 2.3 m between two heights: petals of a rosette
+/// leave such gaps.
+PointCloud WithoutBand(const PointCloud& whole, float low_m, float high_m) {
+  PointCloud gappy = whole;
+  gappy.points.clear();
+  for (const LidarPoint& point : whole.points) {
+    const float height_m = point.position_m.z() / point.position_m.x() * 2.3F;
+    if (height_m < low_m || height_m > high_m) gappy.points.push_back(point);
+  }
+  return gappy;
+}
+
+TEST(LidarBoardVerdict, BoardIsOneOnBothSidesOfAGapOfTheScan) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  const PointCloud whole = SynthesizeLidarBoard(scene);
+  // Of its 0.85 m as much as 0.42 are not seen, nearly three of the cells that patches grow in.
+  for (const auto& [low_m, high_m] :
+       {std::pair(-0.2F, 0.2F), std::pair(-0.21F, 0.21F), std::pair(-0.1F, 0.3F)}) {
+    const auto found = DetectLidarBoard(WithoutBand(whole, low_m, high_m), kBoard, {});
+    ASSERT_TRUE(found) << low_m << ' ' << ToString(found.error());
+    // 10 mm of noise on 500 points: a millimetre for the plane, a few for the outline.
+    EXPECT_LT((found->front().pose.centre_m - Eigen::Vector3d(2.3, 0, 0)).norm(), 0.01) << low_m;
+  }
+}
+
+TEST(LidarBoardVerdict, FrameIsNoBoardWithAGap) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  PointCloud cloud = SynthesizeLidarBoard(scene);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    Eigen::Vector3f& position_m = cloud.points[i].position_m;
+    const bool is_board = position_m.x() < 2.5F && position_m.z() > -0.5F;
+    const bool is_middle = std::abs(position_m.y()) < 0.15F && std::abs(position_m.z()) < 0.21F;
+    // Through the hole most beams meet the wall; every eighth, a wire.
+    if (is_board && is_middle && i % 8 != 0) position_m *= 7.0F / position_m.x();
+  }
+  EXPECT_NE("found", VerdictOn(cloud));
+}
+
+TEST(LidarBoardVerdict, GapOfTheScanAtAnEdgeIsNamed) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  // The uppermost 0.2 m and whatever is above it; higher up the sensor sees the wall.
+  EXPECT_EQ("outline open: the scan leaves a gap at the top",
+            VerdictOn(WithoutBand(SynthesizeLidarBoard(scene), 0.225F, 0.85F)));
+}
+
+TEST(LidarBoardVerdict, SurfaceThatTheFieldOfViewCutsToTheBoardsHeightIsNone) {
+  // A panel as wide as the board and much taller; the sensor sees its upper 0.8 m.
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  scene.board.height_m = 2.0;
+  scene.T_lidar_board = FacingBoard({2.3, 0.0, -0.6}, 0.0);
+  const PointCloud whole = SynthesizeLidarBoard(scene);
+  PointCloud cut = whole;
+  cut.points.clear();
+  for (const LidarPoint& point : whole.points) {
+    if (point.position_m.z() > -0.4F / 2.3F * point.position_m.x()) cut.points.push_back(point);
+  }
+  EXPECT_EQ("outline open: the field of view ends at the bottom", VerdictOn(cut));
+}
+
+TEST(LidarBoardVerdict, SurfaceThatIsScreenedToTheBoardsSizeIsNone) {
+  // Twice as wide as the board; what stands before it on the right leaves as much as a board.
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  scene.board.width_m = 1.22;
+  scene.boxes.push_back(Pillar(-0.4, 0.4));
+  EXPECT_EQ("outline open: something stands before it on the right",
+            VerdictOn(SynthesizeLidarBoard(scene)));
+}
+
+TEST(LidarBoardVerdict, EdgeOfWhichAPartIsShownIsProven) {
+  // Something stands before the surroundings on the right, but for the upper third of the edge.
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  scene.boxes.push_back(Pillar(-0.25, 0.08));
+  scene.boxes.back().half_m.z() = 0.2;
+  scene.boxes.back().T_lidar_box.translation().z() = -0.13;  // up to 0.14 m of 0.42 m on the board
+  EXPECT_EQ("found", VerdictOn(SynthesizeLidarBoard(scene)));
+}
+
+TEST(LidarBoardVerdict, BoardSeenFlatIsNamed) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 128;
+  scene.noise_m = 0.001;
+  for (const double tilt_deg : {60.0, 75.0}) {
+    scene.T_lidar_board = FacingBoard({2.3, 0.0, 0.0}, 0.0, tilt_deg);
+    EXPECT_EQ(tilt_deg < 70 ? "found" : "seen at too flat an angle",
+              VerdictOn(SynthesizeLidarBoard(scene)))
+        << tilt_deg;
+  }
+}
+
+TEST(LidarBoardVerdict, BoardThatAFewLinesLeaveTooMuchPlayIsTooLoose) {
+  const PointCloud cloud = SynthesizeLidarBoard(UprightBoard());
+  LidarBoardOptions strict;
+  strict.max_corner_sigma_m = 0.002;
+  const auto found = DetectLidarBoard(cloud, kBoard, strict);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(ToString(found.error()), "too few beams tell its outline");
+}
+
+TEST(LidarBoardVerdict, BentBoardIsNamedWithItsBend) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  PointCloud cloud = SynthesizeLidarBoard(scene);
+  for (LidarPoint& point : cloud.points) {
+    // Bent about a vertical line by 40 mm at both sides; past the board nothing changes.
+    const double y_m = point.position_m.y();
+    const bool is_board = std::abs(point.position_m.x() - 2.3F) < 0.1F && std::abs(y_m) < 0.32;
+    if (is_board) point.position_m.x() += static_cast<float>(0.04 * std::pow(y_m / 0.305, 2));
+  }
+  const auto found = DetectLidarBoard(cloud, kBoard, {});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().miss, LidarBoardMiss::kBent);
+  // 10 mm of noise on some 500 points: about 1 mm.
+  const std::string detail = found.error().detail;
+  EXPECT_GE(detail, "by 36 mm");
+  EXPECT_LE(detail, "by 44 mm");
+}
+
+TEST(LidarBoardVerdict, FlatBoardIsNotBentByOffsetsOfScanLines) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    SyntheticLidarBoardOptions scene = UprightBoard();
+    scene.seed = seed;
+    PointCloud cloud = SynthesizeLidarBoard(scene);
+    std::mt19937 random(seed);
+    std::vector<float> offset_m;  // of each ring: 10 mm (1 sigma)
+    for (int ring = 0; ring < scene.num_rings; ++ring) {
+      offset_m.push_back(static_cast<float>(0.01 * test::UnitGaussian(&random)));
+    }
+    for (LidarPoint& point : cloud.points) {
+      point.position_m += offset_m[point.ring] * point.position_m.normalized();
+    }
+    EXPECT_EQ("found", VerdictOn(cloud)) << seed;
+  }
+}
+
+TEST(LidarBoardVerdict, OnePlaneOnlyHasNoBoard) {
+  SyntheticLidarBoardOptions scene;
+  scene.has_board = false;
+  scene.has_floor = false;
+  EXPECT_EQ("no plane of the board's size", VerdictOn(SynthesizeLidarBoard(scene)));
+}
+
+TEST(LidarBoardVerdict, EmptyAndBrokenCloudsHaveTooFewPoints) {
+  PointCloud cloud;
+  EXPECT_EQ("too few points", VerdictOn(cloud));
+  cloud.points.resize(10000);
+  EXPECT_EQ("too few points", VerdictOn(cloud));  // at the origin: no returns
+  for (LidarPoint& point : cloud.points) {
+    point.position_m.setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  EXPECT_EQ("too few points", VerdictOn(cloud));
+}
+
+TEST(LidarBoardVerdict, TwoMillionPointsAreMeasuredToo) {
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.num_rings = 64;
+  const PointCloud sweep = SynthesizeLidarBoard(scene);
+  PointCloud dense = sweep;
+  std::mt19937 random(2);
+  while (dense.points.size() < 2000000) {
+    LidarPoint point = sweep.points[dense.points.size() % sweep.points.size()];
+    point.position_m *= static_cast<float>(1.0 + 0.003 * test::UnitGaussian(&random));
+    dense.points.push_back(point);
+  }
+  EXPECT_EQ("found", VerdictOn(dense));
+}
+
+}  // namespace
+}  // namespace voqcal

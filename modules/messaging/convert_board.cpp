@@ -44,6 +44,14 @@ PointCloud PointsOf(const lidar_candidate_t& message) {
   return cloud;
 }
 
+SideView ViewOf(std::int8_t code) {
+  if (code < 0 || code > static_cast<std::int8_t>(SideView::kGap)) {
+    throw std::runtime_error("lidar board message: side " + std::to_string(code) +
+                             " is none of 0 to 4");
+  }
+  return static_cast<SideView>(code);
+}
+
 }  // namespace
 
 board_pose_t ToMessage(const BoardPose& pose) {
@@ -71,6 +79,9 @@ BoardPose FromMessage(const board_pose_t& message) {
 lidar_candidate_t ToMessage(const LidarBoard& board) {
   lidar_candidate_t message{};
   message.pose = ToMessage(board.pose);
+  std::transform(board.sides.begin(), board.sides.end(), message.sides, [](SideView view) {
+    return static_cast<std::int8_t>(view);
+  });
   std::copy(board.edge_lengths_m.begin(), board.edge_lengths_m.end(), message.edge_lengths_m);
   message.plane_rms_m = board.plane_rms_m;
   message.num_beams = board.num_beams;
@@ -82,6 +93,7 @@ lidar_candidate_t ToMessage(const LidarBoard& board) {
 LidarBoard FromMessage(const lidar_candidate_t& message) {
   LidarBoard board;
   board.pose = FromMessage(message.pose);
+  std::transform(std::begin(message.sides), std::end(message.sides), board.sides.begin(), ViewOf);
   std::copy(std::begin(message.edge_lengths_m),
             std::end(message.edge_lengths_m),
             board.edge_lengths_m.begin());

@@ -1,8 +1,29 @@
 #include "core/board/board_sample.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace voqcal {
+
+std::string ToString(SideView view) {
+  switch (view) {
+    case SideView::kMeasured:
+      return "measured";
+    case SideView::kJoined:
+      return "joined";
+    case SideView::kHidden:
+      return "hidden";
+    case SideView::kCutOff:
+      return "cut off";
+    case SideView::kGap:
+      return "in a gap";
+  }
+  throw std::logic_error("unknown SideView");
+}
+
+int NumMeasuredSides(const LidarBoard& board) {
+  return static_cast<int>(std::count(board.sides.begin(), board.sides.end(), SideView::kMeasured));
+}
 
 Eigen::Isometry3d TransformFromPose(const BoardPose& pose) {
   const auto& c = pose.corners_m;

@@ -30,10 +30,28 @@ struct BoardPose {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
+/// What a sweep showed of one side of the board's outline.
+enum class SideView : std::uint8_t {
+  kMeasured,  ///< Beams past it tell where the board ends.
+  kJoined,    ///< Something touches the board there: ground, frame, post, wall, hand.
+  kHidden,    ///< Something stands before it.
+  kCutOff,    ///< The field of view, or a cropped cloud, ends before it.
+  kGap,       ///< The sweep left a gap there.
+};
+std::string ToString(SideView view);  ///< "measured", "joined", ...
+
 /// What the lidar board detector says of one board.
+///
+/// The pose is always whole: the known size completes what was measured. What no side and no plane
+/// fixes is as uncertain as the returns leave it, since all of them lie on the board: a sighting of
+/// the plane alone has a centre that may be off by half the board, and a turn about the normal that
+/// may be anything, and its covariance says so.
 struct LidarBoard {
-  BoardPose pose;                          ///< In the lidar frame.
-  std::array<double, 4> edge_lengths_m{};  ///< Each edge measured freely, not from the known size.
+  BoardPose pose;                   ///< In the lidar frame.
+  std::array<SideView, 4> sides{};  ///< Of each edge, in BoardSpec's order.
+  /// Each edge measured freely, not from the known size; NaN where a side at either of its ends is
+  /// not measured.
+  std::array<double, 4> edge_lengths_m{};
   double plane_rms_m = std::numeric_limits<double>::quiet_NaN();
   int num_beams = 0;            ///< Scan lines on the board; 0 if the scan has none.
   double log_likelihood = 0.0;  ///< Higher is better; ranks the candidates of one sweep.
@@ -69,6 +87,9 @@ struct BoardSample {
   /// likeliest by its own looks.
   std::vector<LidarBoard> runners_up{};
 };
+
+/// How many sides of the board were measured: 4 is a whole sighting, 0 the plane alone.
+int NumMeasuredSides(const LidarBoard& board);
 
 /// T_sensor_board of a pose: the rotation nearest to its edges and normal, at its centre.
 Eigen::Isometry3d TransformFromPose(const BoardPose& pose);

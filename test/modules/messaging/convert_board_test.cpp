@@ -40,6 +40,7 @@ LidarBoard Lidar(Numbers* numbers) {
   LidarBoard board;
   board.pose = Pose(numbers);
   for (double& length_m : board.edge_lengths_m) length_m = numbers->Next();
+  board.sides = {SideView::kJoined, SideView::kMeasured, SideView::kGap, SideView::kCutOff};
   board.plane_rms_m = numbers->Next();
   board.num_beams = 9;
   board.log_likelihood = -numbers->Next();
@@ -84,6 +85,7 @@ void ExpectSame(const BoardPose& a, const BoardPose& b) {
 
 void ExpectSame(const LidarBoard& a, const LidarBoard& b) {
   ExpectSame(a.pose, b.pose);
+  EXPECT_EQ(a.sides, b.sides);
   EXPECT_EQ(a.edge_lengths_m, b.edge_lengths_m);
   EXPECT_EQ(a.plane_rms_m, b.plane_rms_m);
   EXPECT_EQ(a.num_beams, b.num_beams);

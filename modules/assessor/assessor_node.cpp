@@ -5,7 +5,6 @@
 
 #include <system_error>
 
-#include "core/selection/voq.hpp"
 #include "files/atomic_file.hpp"
 #include "messaging/convert_assessment.hpp"
 #include "messaging/convert_board.hpp"
@@ -41,6 +40,22 @@ void Fill(const CalibrationResult& result, assessment_t* assessment) {
   FillArray(result.diagnosis.findings, &assessment->findings, &assessment->num_findings);
   assessment->not_judged = result.diagnosis.not_judged;
   assessment->num_not_judged = static_cast<std::int32_t>(assessment->not_judged.size());
+  const Verdict verdict = VerdictOf(result);
+  assessment->verdict_grade = ToString(verdict.grade);
+  assessment->verdict_headline = verdict.headline;
+  FillArray(verdict.checks, &assessment->verdict_checks, &assessment->num_verdict_checks);
+}
+
+ChosenSamples ChosenOf(const samples_t& samples, const extrinsic_averaged_t& averaged) {
+  ChosenSamples chosen;
+  chosen.samples = SamplesAsChosen(samples, averaged.chosen);
+  for (std::size_t i = 0; i < averaged.inconsistent_ids.size(); ++i) {
+    chosen.rejected.push_back({averaged.inconsistent_ids[i], averaged.inconsistent_reasons[i]});
+  }
+  for (const chosen_candidate_t& each : averaged.chosen) {
+    chosen.exchanged.push_back({each.sample_id, each.candidate, each.reason});
+  }
+  return chosen;
 }
 
 }  // namespace
@@ -98,61 +113,15 @@ void AssessorNode::Assess() {
 }
 
 CalibrationResult AssessorNode::Result() {
-  const std::vector<BoardSample> all = SamplesAsChosen(*samples_, averaged_->chosen);
-  const std::vector<const BoardSample*> samples = SamplesWithout(all, averaged_->inconsistent_ids);
-
-  const BestExtrinsic refined = FromMessage(*refined_);
-
-  CalibrationResult result;
-  result.T_camera_lidar = refined.T_camera_lidar;
-  result.covariance = refined.covariance;
-  result.method = refined.method;
-  result.trials = refined.trials;
-  result.lidar_bias = refined.Bias();
-  result.averaged.T_camera_lidar = FromMessage(averaged_->T_camera_lidar);
-  result.averaged.spread = Eigen::Map<const Vector6d>(averaged_->spread);
-  result.averaged.num_sets = averaged_->num_sets;
-  for (const set_extrinsic_t& set : averaged_->sets) result.averaged.num_kept += set.is_kept;
-
-  result.held_out = refined.held_out;
-  result.in_sample = ScoreCorrected(samples, rig_.camera, result.T_camera_lidar, result.lidar_bias);
-  result.of_average = ScoreScene(samples, rig_.camera, result.averaged.T_camera_lidar);
-
-  result.held_out_by_cell = BinByImageCell(samples, result.held_out, rig_.camera);
-  result.held_out_by_range = BinByRange(samples, result.held_out);
-  result.predicted = PredictErrors(result.T_camera_lidar, result.covariance, rig_.camera);
-  result.scene_check = CheckScene(views_.Of(samples),
-                                  rig_.camera,
-                                  result.T_camera_lidar,
-                                  result.averaged.T_camera_lidar,
-                                  rig_.scene_check);
-  result.diagnosis = Diagnose(samples,
-                              averaged_->num_inconsistent,
-                              rig_.board,
-                              rig_.camera,
-                              result.T_camera_lidar,
-                              result.lidar_bias.common,
-                              rig_.diagnosis);
-
-  // Lens against lens: another method's scores would be compared with the likelihood's.
-  for (const MethodTrial& trial : result.trials) {
-    if (trial.method != RefineMethod::kLikelihood || !trial.problem.empty()) continue;
-    result.lens_correction = CorrectLens(samples,
-                                         rig_.board,
-                                         rig_.camera,
-                                         result.T_camera_lidar,
-                                         trial.held_out,
-                                         rig_.extrinsic_refiner.likelihood);
-  }
-  result.e_dim_mm = MedianBoardDimensionErrorMm(all, rig_.board);
-
-  result.used_ids = IdsOf(samples);
-  for (std::size_t i = 0; i < averaged_->inconsistent_ids.size(); ++i) {
-    result.rejected.push_back({averaged_->inconsistent_ids[i], averaged_->inconsistent_reasons[i]});
-  }
-  for (const chosen_candidate_t& each : averaged_->chosen) {
-    result.exchanged.push_back({each.sample_id, each.candidate, each.reason});
-  }
+  const auto scene_views = [this](const std::vector<const BoardSample*>& samples) {
+    return views_.Of(samples);
+  };
+  CalibrationResult result{Assess(ChosenOf(*samples_, *averaged_),
+                                  FromMessage(*averaged_),
+                                  FromMessage(*refined_),
+                                  scene_views,
+                                  rig_.Task()),
+                           {}};
   result.made_from = {samples_->log_sha256, rig_.sha256, VOQCAL_VERSION};
   return result;
 }

@@ -187,14 +187,9 @@ void DashboardNode::ShowResult() {
     return;
   }
   OfferExports();
-  const Evidence evidence = EvidenceOf(*refined_, *assessment_, samples_->num_samples);
   Show(Slot::kResult,
-       ResultJson(*refined_,
-                  *assessment_,
-                  Judge(evidence),
-                  IsMadeFrom(*samples_, *assessment_),
-                  working_on,
-                  exports_));
+       ResultJson(
+           *refined_, *assessment_, IsMadeFrom(*samples_, *assessment_), working_on, exports_));
 }
 
 void DashboardNode::ShowNoResult(const std::string& problem) {

@@ -103,13 +103,14 @@ Json Part(const spread_t& spread) {
   return {{"mean", spread.mean}, {"std", spread.std}, {"max", spread.max}};
 }
 
-Json Part(const Verdict& verdict) {
+Json VerdictPart(const assessment_t& assessment) {
   Json checks = Json::array();
-  for (const VerdictCheck& check : verdict.checks) {
-    checks.push_back(
-        {{"name", check.name}, {"grade", ToString(check.grade)}, {"text", check.text}});
+  for (const verdict_check_t& check : assessment.verdict_checks) {
+    checks.push_back({{"name", check.name}, {"grade", check.grade}, {"text", check.text}});
   }
-  return {{"grade", ToString(verdict.grade)}, {"headline", verdict.headline}, {"checks", checks}};
+  return {{"grade", assessment.verdict_grade},
+          {"headline", assessment.verdict_headline},
+          {"checks", checks}};
 }
 
 /// 1 sigma of three of the covariance's axes.
@@ -118,19 +119,6 @@ Json Sigma(const extrinsic_refined_t& refined, int first, double scale) {
   for (int i = first; i < first + 3; ++i)
     sigma.push_back(scale * std::sqrt(refined.covariance[i][i]));
   return sigma;
-}
-
-double LargestSigma(const extrinsic_refined_t& refined, int first) {
-  double variance = 0;
-  for (int i = first; i < first + 3; ++i) variance = std::max(variance, refined.covariance[i][i]);
-  return std::sqrt(variance);
-}
-
-SceneVerdict SceneVerdictOf(const std::string& text) {
-  for (const SceneVerdict each : {SceneVerdict::kAgrees, SceneVerdict::kDisagrees}) {
-    if (text == ToString(each)) return each;
-  }
-  return SceneVerdict::kNotJudged;
 }
 
 }  // namespace
@@ -159,7 +147,6 @@ std::string SamplesJson(const samples_t& message,
 
 std::string ResultJson(const extrinsic_refined_t& refined,
                        const assessment_t& assessment,
-                       const Verdict& verdict,
                        bool is_current,
                        const std::string& working_on,
                        const std::vector<std::string>& exports) {
@@ -178,7 +165,7 @@ std::string ResultJson(const extrinsic_refined_t& refined,
   for (const predicted_error_t& each : assessment.predicted) {
     json["predicted"].push_back({{"range_m", each.range_m}, {"corner_mm", each.corner_mm}});
   }
-  json["verdict"] = Part(verdict);
+  json["verdict"] = VerdictPart(assessment);
   json["exports"] = exports;
   return Text(json);
 }
@@ -247,24 +234,6 @@ std::string EventsJson(const std::deque<CountedEvent>& events) {
                               {"count", each.count}});
   }
   return Text(json);
-}
-
-Evidence EvidenceOf(const extrinsic_refined_t& refined,
-                    const assessment_t& assessment,
-                    int num_samples) {
-  Evidence evidence;
-  evidence.held_out_mm = assessment.refined_held_out.centre_mm.mean;
-  evidence.in_sample_mm = assessment.refined_in_sample.centre_mm.mean;
-  evidence.normal_deg = assessment.refined_held_out.normal_deg.mean;
-  evidence.sigma_deg = kDegPerRad * LargestSigma(refined, 0);
-  evidence.sigma_mm = 1e3 * LargestSigma(refined, 3);
-  evidence.num_used = assessment.num_samples;
-  evidence.num_samples = num_samples;
-  evidence.num_cells = assessment.num_image_cells;
-  evidence.scene = SceneVerdictOf(assessment.scene_check.verdict);
-  evidence.scene_reason = assessment.scene_check.reason;
-  evidence.likeliest_fault = LikeliestFault(assessment.findings);
-  return evidence;
 }
 
 }  // namespace voqcal

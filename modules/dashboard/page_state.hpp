@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "core/assessment/verdict.hpp"
 #include "core/board/board_sample.hpp"
 #include "rig/rig.hpp"
 #include "voqcal/assessment_t.hpp"
@@ -38,7 +37,6 @@ std::string SamplesJson(const samples_t& message,
 /// @param exports  names of the files that can be had.
 std::string ResultJson(const extrinsic_refined_t& refined,
                        const assessment_t& assessment,
-                       const Verdict& verdict,
                        bool is_current,
                        const std::string& working_on,
                        const std::vector<std::string>& exports);
@@ -57,10 +55,5 @@ struct CountedEvent {
 };
 /// @param events  the newest first.
 std::string EventsJson(const std::deque<CountedEvent>& events);
-
-/// What a verdict on these messages rests on.
-Evidence EvidenceOf(const extrinsic_refined_t& refined,
-                    const assessment_t& assessment,
-                    int num_samples);
 
 }  // namespace voqcal

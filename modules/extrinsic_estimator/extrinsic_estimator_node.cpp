@@ -35,10 +35,9 @@ extrinsic_averaged_t ExtrinsicEstimatorNode::Estimate() const {
   extrinsic_averaged_t result{};
   std::string problem = sets_->problem;
   if (problem.empty()) {
-    const std::vector<SetExtrinsic> extrinsics = CalibrateSets();
-    const AveragedExtrinsic averaged = AverageExtrinsics(extrinsics, rig_.average);
-    result = ToMessage(averaged, sets_->sets, extrinsics);
-    if (!averaged.IsUsable()) problem = "no set of samples gives an extrinsic";
+    const AveragedSets averaged = Average();
+    result = ToMessage(averaged.average, sets_->sets, averaged.extrinsics);
+    problem = averaged.problem;
   }
   StampMadeFrom(*samples_, &result);
   result.problem = problem;
@@ -50,18 +49,13 @@ extrinsic_averaged_t ExtrinsicEstimatorNode::Estimate() const {
   return result;
 }
 
-std::vector<SetExtrinsic> ExtrinsicEstimatorNode::CalibrateSets() const {
+AveragedSets ExtrinsicEstimatorNode::Average() const {
   const std::vector<BoardSample> samples = SamplesAsChosen(*samples_, sets_->chosen);
-  const std::vector<std::int64_t> ids = IdsOf(SamplesWithout(samples, {}));
-  std::vector<SetExtrinsic> extrinsics;
-  for (const voq_set_t& message : sets_->sets) {
-    std::vector<const BoardSample*> set;
-    for (const int index : FromMessage(message, ids).samples) {
-      set.push_back(&samples[static_cast<std::size_t>(index)]);
-    }
-    extrinsics.push_back(EstimateSetExtrinsic(set, rig_.camera, rig_.extrinsic_estimator));
-  }
-  return extrinsics;
+  const std::vector<const BoardSample*> used = SamplesWithout(samples, sets_->inconsistent_ids);
+  const std::vector<std::int64_t> ids = IdsOf(used);
+  std::vector<VoqSet> sets;
+  for (const voq_set_t& message : sets_->sets) sets.push_back(FromMessage(message, ids));
+  return AverageSets(used, sets, rig_.Task());
 }
 
 }  // namespace voqcal

@@ -27,7 +27,7 @@ class ExtrinsicEstimatorNode : public Module {
 
  private:
   extrinsic_averaged_t Estimate() const;
-  std::vector<SetExtrinsic> CalibrateSets() const;
+  AveragedSets Average() const;
 
   Rig rig_;
   Bus& bus_;

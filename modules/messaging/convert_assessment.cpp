@@ -60,4 +60,12 @@ finding_t ToMessage(const Finding& finding) {
   return message;
 }
 
+verdict_check_t ToMessage(const VerdictCheck& check) {
+  verdict_check_t message{};
+  message.name = check.name;
+  message.grade = ToString(check.grade);
+  message.text = check.text;
+  return message;
+}
+
 }  // namespace voqcal

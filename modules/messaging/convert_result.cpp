@@ -91,12 +91,11 @@ VoqSet FromMessage(const voq_set_t& message, const std::vector<std::int64_t>& sa
   return set;
 }
 
-chosen_candidate_t ToMessage(const ChosenCandidate& chosen,
-                             const std::vector<std::int64_t>& sample_ids) {
+chosen_candidate_t ToMessage(const ExchangedSample& exchanged) {
   chosen_candidate_t message{};
-  message.sample_id = sample_ids.at(static_cast<std::size_t>(chosen.sample));
-  message.candidate = chosen.candidate;
-  message.reason = chosen.reason;
+  message.sample_id = exchanged.id;
+  message.candidate = exchanged.candidate;
+  message.reason = exchanged.reason;
   return message;
 }
 

@@ -7,9 +7,9 @@
 
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/scores.hpp"
+#include "core/calibration/calibrate.hpp"
 #include "core/estimation/average.hpp"
 #include "core/estimation/set_extrinsic.hpp"
-#include "core/selection/consistency.hpp"
 #include "core/selection/voq.hpp"
 #include "voqcal/chosen_candidate_t.hpp"
 #include "voqcal/extrinsic_averaged_t.hpp"
@@ -42,9 +42,7 @@ voq_set_t ToMessage(const VoqSet& set, const std::vector<std::int64_t>& sample_i
 /// @throws std::runtime_error if the set has a sample that `sample_ids` has not.
 VoqSet FromMessage(const voq_set_t& message, const std::vector<std::int64_t>& sample_ids);
 
-/// @param sample_ids  id of each sample that the indices refer to.
-chosen_candidate_t ToMessage(const ChosenCandidate& chosen,
-                             const std::vector<std::int64_t>& sample_ids);
+chosen_candidate_t ToMessage(const ExchangedSample& exchanged);
 /// Takes for each sample the candidate that was chosen for it.
 /// @throws std::runtime_error if a sample or a candidate that was chosen is not there.
 void TakeChosen(const std::vector<chosen_candidate_t>& chosen, std::vector<BoardSample>* samples);

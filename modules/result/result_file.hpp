@@ -1,48 +1,16 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <string>
-#include <vector>
 
 #include <Eigen/Geometry>
 
-#include "core/assessment/best_extrinsic.hpp"
-#include "core/assessment/diagnosis.hpp"
-#include "core/assessment/lens_correction.hpp"
-#include "core/assessment/predicted_error.hpp"
-#include "core/assessment/scene_check.hpp"
-#include "core/assessment/score_bins.hpp"
-#include "core/assessment/scores.hpp"
-#include "core/geometry/rigid.hpp"
+#include "core/calibration/calibration.hpp"
 
 namespace voqcal {
 
 /// Name of the result in a session's folder.
 inline constexpr char kResultName[] = "extrinsic.yaml";
-
-/// A sample that the result was not made from, and why.
-struct RejectedSample {
-  std::int64_t id = 0;
-  std::string reason;
-};
-
-/// A sample of which one of the lidar's runners-up was taken for the board, and why.
-struct ExchangedSample {
-  std::int64_t id = 0;
-  int candidate = 0;  ///< Of its runners-up: 1 is the first.
-  std::string reason;
-};
-
-/// The VOQ average that the refinement started from.
-struct AveragedPart {
-  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  Vector6d spread =
-      Vector6d::Zero();  ///< Of the kept sets: [rotation_rad; translation_m], left side.
-  int num_sets = 0;
-  int num_kept = 0;  ///< Within the z-score.
-};
 
 /// Which bytes the result is made from. No wall-clock time: the file is the same each run.
 struct MadeFrom {
@@ -52,29 +20,7 @@ struct MadeFrom {
 };
 
 /// Everything that extrinsic.yaml says.
-struct CalibrationResult {
-  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  /// Of [rotation_rad; translation_m], perturbed on the left (camera side).
-  Matrix6d covariance = Matrix6d::Zero();
-  RefineMethod method = RefineMethod::kAverage;  ///< That T_camera_lidar comes from.
-  std::vector<MethodTrial> trials;               ///< The scores that chose it.
-  AveragedPart averaged;
-  LidarBias lidar_bias;                     ///< Removed from the boards before they are scored.
-  SceneScore held_out;                      ///< Each sample by the extrinsic refined without it.
-  SceneScore in_sample;                     ///< Flatters: the same samples made the extrinsic.
-  SceneScore of_average;                    ///< The VOQ average on all samples.
-  std::vector<ScoreBin> held_out_by_cell;   ///< Of the image.
-  std::vector<ScoreBin> held_out_by_range;  ///< From the camera.
-  std::vector<PredictedError> predicted;    ///< Out to 50 m.
-  SceneCheck scene_check;
-  Diagnosis diagnosis;
-  /// For who can correct the intrinsics too; nothing else of the result uses it.
-  LensCorrection lens_correction;
-  /// Median over the accepted samples of e_dim, the errors of the lidar's four edge lengths summed.
-  double e_dim_mm = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::int64_t> used_ids;
-  std::vector<RejectedSample> rejected;
-  std::vector<ExchangedSample> exchanged;
+struct CalibrationResult : Calibration {
   MadeFrom made_from;
 };
 

@@ -41,6 +41,18 @@ std::vector<std::string> LidarSensorOptions::Problems() const {
   return problems.lines();
 }
 
+CalibrationTask Rig::Task() const {
+  return {board,
+          camera,
+          {consistency,
+           voq_selector,
+           extrinsic_estimator,
+           average,
+           extrinsic_refiner,
+           scene_check,
+           diagnosis}};
+}
+
 Rig LoadRig(const std::filesystem::path& path) {
   const std::string text = ReadWholeFile(path);
   YamlDocument document(path.string(), text);

@@ -9,6 +9,7 @@
 #include "core/assessment/diagnosis.hpp"
 #include "core/assessment/scene_check.hpp"
 #include "core/board/board_spec.hpp"
+#include "core/calibration/calibrate.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/camera_detection/camera_board.hpp"
 #include "core/estimation/average.hpp"
@@ -120,6 +121,9 @@ struct Rig {
   DiagnosisOptions diagnosis;     ///< Under assessor.
   DashboardOptions dashboard;
   GuidanceOptions pose_guide;
+
+  /// What of it the method needs.
+  CalibrationTask Task() const;
 };
 
 /// Reads and checks a rig file (YAML). Options that are not given keep their defaults; board and

@@ -12,18 +12,13 @@ namespace {
 std::int64_t NumCombinationsOfThree(std::int64_t n) { return n * (n - 1) * (n - 2) / 6; }
 
 // What became of the samples that do not fit the others as they are.
-void AddVerdicts(const std::vector<BoardSample>& samples,
-                 const Consistency& consistency,
-                 voq_sets_t* result) {
-  const std::vector<std::int64_t> ids = IdsOf(SamplesWithout(samples, {}));
-  for (const InconsistentSample& each : consistency.inconsistent) {
-    result->inconsistent_ids.push_back(ids[static_cast<std::size_t>(each.sample)]);
+void AddFates(const ChosenSamples& chosen, voq_sets_t* result) {
+  for (const RejectedSample& each : chosen.rejected) {
+    result->inconsistent_ids.push_back(each.id);
     result->inconsistent_reasons.push_back(each.reason);
   }
   result->num_inconsistent = static_cast<std::int32_t>(result->inconsistent_ids.size());
-  for (const ChosenCandidate& each : consistency.chosen) {
-    result->chosen.push_back(ToMessage(each, ids));
-  }
+  for (const ExchangedSample& each : chosen.exchanged) result->chosen.push_back(ToMessage(each));
   result->num_chosen = static_cast<std::int32_t>(result->chosen.size());
 }
 
@@ -54,27 +49,18 @@ voq_sets_t VoqSelectorNode::Select(const samples_t& message) const {
   voq_sets_t result{};
   StampMadeFrom(message, &result);
   result.criterion = ToString(rig_.voq_selector.criterion);
-  const std::vector<BoardSample> samples = FromMessage(message);
-  const Consistency consistency = FindConsistent(samples, rig_.consistency);
-  AddVerdicts(samples, consistency, &result);
+  const CalibrationTask task = rig_.Task();
+  const ChosenSamples chosen = ChooseSamples(FromMessage(message), task.options.consistency);
+  AddFates(chosen, &result);
 
-  const std::vector<BoardSample> consistent = ConsistentSamples(samples, consistency);
-  result.num_combinations = NumCombinationsOfThree(static_cast<std::int64_t>(consistent.size()));
-  if (consistent.size() < 3) {
-    result.problem = "fewer than three samples that agree with each other: " +
-                     std::to_string(consistent.size()) + " of " + std::to_string(samples.size());
-    return result;
-  }
-  const std::vector<std::int64_t> ids = IdsOf(SamplesWithout(consistent, {}));
-  for (const VoqSet& set : SelectSets(consistent, rig_.board, rig_.camera, rig_.voq_selector)) {
-    result.sets.push_back(ToMessage(set, ids));
-  }
+  const std::vector<std::int64_t> ids = IdsOf(chosen.Used());
+  result.num_combinations = NumCombinationsOfThree(static_cast<std::int64_t>(ids.size()));
+  const ChosenSets sets = ChooseSets(chosen, task);
+  for (const VoqSet& set : sets.sets) result.sets.push_back(ToMessage(set, ids));
   result.num_sets = static_cast<std::int32_t>(result.sets.size());
-  for (const VoqSet& set : SelectByVoq(consistent, rig_.board, rig_.voq_selector.num_sets)) {
-    result.lowest_voq.push_back(ToMessage(set, ids));
-  }
+  for (const VoqSet& set : sets.lowest_voq) result.lowest_voq.push_back(ToMessage(set, ids));
   result.num_lowest_voq = static_cast<std::int32_t>(result.lowest_voq.size());
-  if (result.sets.empty()) result.problem = "all boards face the same way: tilt it differently";
+  result.problem = sets.problem;
   return result;
 }
 

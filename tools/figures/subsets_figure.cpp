@@ -8,9 +8,7 @@
 
 #include "calibrate/collect.hpp"
 #include "common/scratch_folder.hpp"
-#include "core/assessment/best_extrinsic.hpp"
-#include "core/selection/consistency.hpp"
-#include "core/selection/select_sets.hpp"
+#include "core/calibration/calibrate.hpp"
 #include "core/simulation/keyed_noise.hpp"
 #include "figures/figures.hpp"
 
@@ -25,19 +23,16 @@ struct SubsetsArgs {
   std::uint32_t seed = 1;
 };
 
-AveragedExtrinsic Average(const std::vector<BoardSample>& samples, const Rig& rig) {
-  std::vector<SetExtrinsic> extrinsics;
-  for (const VoqSet& set : SelectSets(samples, rig.board, rig.camera, rig.voq_selector)) {
-    std::vector<const BoardSample*> members;
-    for (const int i : set.samples) members.push_back(&samples[static_cast<std::size_t>(i)]);
-    extrinsics.push_back(EstimateSetExtrinsic(members, rig.camera, rig.extrinsic_estimator));
-  }
-  return AverageExtrinsics(extrinsics, rig.average);
+// What a draw gives, all of its samples being known to agree.
+BestExtrinsic RefineDraw(const ChosenSamples& draw, const CalibrationTask& task) {
+  const std::vector<const BoardSample*> used = draw.Used();
+  const AveragedSets averaged = AverageSets(used, ChooseSets(draw, task).sets, task);
+  return RefineBest(used, task.camera, averaged.average, task.options.refinement);
 }
 
 // The first `num` of the samples, as one draw orders them, and the rest.
 struct Draw {
-  std::vector<BoardSample> taken;
+  ChosenSamples taken;
   std::vector<const BoardSample*> rest;
 };
 
@@ -51,8 +46,8 @@ Draw DrawSubset(const std::vector<const BoardSample*>& samples,
   std::sort(order.begin(), order.end());
   Draw draw;
   for (const auto& [key, sample] : order) {
-    if (static_cast<int>(draw.taken.size()) < num) {
-      draw.taken.push_back(*sample);
+    if (static_cast<int>(draw.taken.samples.size()) < num) {
+      draw.taken.samples.push_back(*sample);
     } else {
       draw.rest.push_back(sample);
     }
@@ -60,29 +55,20 @@ Draw DrawSubset(const std::vector<const BoardSample*>& samples,
   return draw;
 }
 
-std::vector<const BoardSample*> PointersTo(const std::vector<BoardSample>& samples) {
-  std::vector<const BoardSample*> pointers;
-  for (const BoardSample& sample : samples) pointers.push_back(&sample);
-  return pointers;
-}
-
 void PrintSubsets(const SubsetsArgs& args) {
   const Rig rig = LoadRig(args.rig);
   const ScratchFolder scratch(std::filesystem::temp_directory_path() / "voqcal-subsets");
   const auto run = CollectSamples(rig, args.input, scratch.path());
   run->Finish(/*is_collecting_only=*/true);
-  std::vector<const BoardSample*> samples;
-  for (const int i : FindConsistent(run->samples(), rig.consistency).consistent) {
-    samples.push_back(&run->samples()[static_cast<std::size_t>(i)]);
-  }
+  const ChosenSamples chosen = ChooseSamples(run->samples(), rig.consistency);
+  const std::vector<const BoardSample*> samples = chosen.Used();
   double sum_mm = 0.0;
   double largest_mm = 0.0;
   int num_scored = 0;
   std::puts("draw  method        centre_mm  corner_mm  normal_deg  of the remaining poses");
   for (int i = 0; i < args.num_draws; ++i) {
     const Draw draw = DrawSubset(samples, args.num_poses, args.seed, i);
-    const BestExtrinsic best = RefineBest(
-        PointersTo(draw.taken), rig.camera, Average(draw.taken, rig), rig.extrinsic_refiner);
+    const BestExtrinsic best = RefineDraw(draw.taken, rig.Task());
     if (!best.IsUsable()) {
       std::printf("%4d  none: %s\n", i, best.problem.c_str());
       continue;

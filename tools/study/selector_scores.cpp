@@ -3,24 +3,12 @@
 #include <cmath>
 #include <functional>
 
-#include "core/estimation/average.hpp"
+#include "core/calibration/calibrate.hpp"
 #include "core/estimation/refine.hpp"
 #include "study/statistics.hpp"
 
 namespace voqcal {
 namespace {
-
-AveragedExtrinsic AverageOfChosen(const std::vector<BoardSample>& samples,
-                                  const Rig& rig,
-                                  const SelectionOptions& selection) {
-  std::vector<SetExtrinsic> extrinsics;
-  for (const VoqSet& set : SelectSets(samples, rig.board, rig.camera, selection)) {
-    std::vector<const BoardSample*> members;
-    for (const int i : set.samples) members.push_back(&samples[static_cast<std::size_t>(i)]);
-    extrinsics.push_back(EstimateSetExtrinsic(members, rig.camera, rig.extrinsic_estimator));
-  }
-  return AverageExtrinsics(extrinsics, rig.average);
-}
 
 Spread SpreadOf(const std::vector<double>& values) {
   Spread spread;
@@ -35,20 +23,20 @@ Spread SpreadOf(const std::vector<double>& values) {
 SelectorScore CrossValidate(const std::vector<BoardSample>& samples,
                             const Rig& rig,
                             SelectionCriterion criterion) {
-  SelectionOptions selection = rig.voq_selector;
+  CalibrationTask task = rig.Task();
+  SelectionOptions& selection = task.options.selection;
   selection.criterion = criterion;
   const std::uint32_t num_draws = criterion == SelectionCriterion::kRandom ? 10 : 1;
   std::vector<double> average_mm, final_mm;
   for (std::uint32_t draw = 0; draw < num_draws; ++draw) {
     selection.seed = rig.voq_selector.seed + draw;
     for (std::size_t held_out = 0; held_out < samples.size(); ++held_out) {
-      std::vector<BoardSample> others = samples;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(held_out));
-      const AveragedExtrinsic average = AverageOfChosen(others, rig, selection);
-      const RefinedExtrinsic refined = RefineExtrinsic(SamplesWithout(others, {}),
-                                                       rig.camera,
-                                                       average.T_camera_lidar,
-                                                       rig.extrinsic_refiner.reprojection);
+      ChosenSamples others{samples, {}, {}};
+      others.samples.erase(others.samples.begin() + static_cast<std::ptrdiff_t>(held_out));
+      const AveragedExtrinsic average =
+          AverageSets(others.Used(), ChooseSets(others, task).sets, task).average;
+      const RefinedExtrinsic refined = RefineExtrinsic(
+          others.Used(), rig.camera, average.T_camera_lidar, rig.extrinsic_refiner.reprojection);
       const auto error_mm = [&](bool is_usable, const Eigen::Isometry3d& T_camera_lidar) {
         return is_usable ? ScorePose(samples[held_out], rig.camera, T_camera_lidar).centre_mm
                          : std::nan("");

@@ -71,8 +71,9 @@ TEST(ResultJson, HasSigmasInTheOrderOfTheCovariance) {
   extrinsic_refined_t refined{};
   for (int i = 0; i < 6; ++i) refined.covariance[i][i] = std::pow(1e-3 * (i + 1), 2);
   refined.T_camera_lidar.quaternion_xyzw[3] = 1;
-  const Json json =
-      Json::parse(ResultJson(refined, assessment_t{}, Verdict{}, true, "", {"extrinsic.yaml"}));
+  assessment_t assessment{};
+  assessment.verdict_grade = "bad";
+  const Json json = Json::parse(ResultJson(refined, assessment, true, "", {"extrinsic.yaml"}));
   EXPECT_NEAR(json["sigma_deg"][0], 1e-3 * 180 / M_PI, 1e-9);
   EXPECT_NEAR(json["sigma_mm"][2], 6.0, 1e-9);
   EXPECT_EQ(json["exports"], Json({"extrinsic.yaml"}));

@@ -1,0 +1,74 @@
+#include "core/calibration/calibrate.hpp"
+#include "core/selection/voq.hpp"
+
+namespace voqcal {
+namespace {
+
+AveragedPart PartOf(const AveragedExtrinsic& average) {
+  AveragedPart part;
+  part.T_camera_lidar = average.T_camera_lidar;
+  part.spread = average.spread;
+  part.num_sets = static_cast<int>(average.is_kept.size());
+  part.num_kept = average.num_kept;
+  return part;
+}
+
+/// Lens against lens: another method's scores would be compared with the likelihood's.
+LensCorrection LensCorrectionOf(const std::vector<const BoardSample*>& used,
+                                const Calibration& calibration,
+                                const CalibrationTask& task) {
+  for (const MethodTrial& trial : calibration.trials) {
+    if (trial.method != RefineMethod::kLikelihood || !trial.problem.empty()) continue;
+    return CorrectLens(used,
+                       task.board,
+                       task.camera,
+                       calibration.T_camera_lidar,
+                       trial.held_out,
+                       task.options.refinement.likelihood);
+  }
+  return {};
+}
+
+}  // namespace
+
+Calibration Assess(const ChosenSamples& chosen,
+                   const AveragedExtrinsic& average,
+                   const BestExtrinsic& refined,
+                   const SceneViewsOf& scene_views,
+                   const CalibrationTask& task) {
+  const std::vector<const BoardSample*> used = chosen.Used();
+  const CameraModel& camera = task.camera;
+  Calibration result;
+  result.T_camera_lidar = refined.T_camera_lidar;
+  result.covariance = refined.covariance;
+  result.method = refined.method;
+  result.trials = refined.trials;
+  result.lidar_bias = refined.Bias();
+  result.averaged = PartOf(average);
+  result.held_out = refined.held_out;
+  result.in_sample = ScoreCorrected(used, camera, result.T_camera_lidar, result.lidar_bias);
+  result.of_average = ScoreScene(used, camera, average.T_camera_lidar);
+  result.held_out_by_cell = BinByImageCell(used, result.held_out, camera);
+  result.held_out_by_range = BinByRange(used, result.held_out);
+  result.predicted = PredictErrors(result.T_camera_lidar, result.covariance, camera);
+  result.scene_check = CheckScene(scene_views ? scene_views(used) : std::vector<SceneView>(),
+                                  camera,
+                                  result.T_camera_lidar,
+                                  average.T_camera_lidar,
+                                  task.options.scene_check);
+  result.diagnosis = Diagnose(used,
+                              static_cast<int>(chosen.rejected.size()),
+                              task.board,
+                              camera,
+                              result.T_camera_lidar,
+                              result.lidar_bias.common,
+                              task.options.diagnosis);
+  result.lens_correction = LensCorrectionOf(used, result, task);
+  result.e_dim_mm = MedianBoardDimensionErrorMm(chosen.samples, task.board);
+  result.used_ids = IdsOf(used);
+  result.rejected = chosen.rejected;
+  result.exchanged = chosen.exchanged;
+  return result;
+}
+
+}  // namespace voqcal

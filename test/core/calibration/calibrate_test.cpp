@@ -1,0 +1,86 @@
+#include "core/calibration/calibrate.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/matchers.hpp"
+#include "support/synthetic_samples.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+const CalibrationTask kTask{test::TestBoard(), test::TestCamera(), {}};
+
+test::SyntheticSamplesOptions NoisyScene() {
+  test::SyntheticSamplesOptions scene;
+  scene.num_samples = 20;
+  scene.lidar_centre_noise_m = 0.002;
+  scene.lidar_rotation_noise_rad = 0.003;
+  scene.edge_noise_m = 0.002;
+  return scene;
+}
+
+TEST(Calibrate, FindsTheExtrinsicAndSaysWhatItIsMadeFrom) {
+  test::SyntheticSamplesOptions scene = NoisyScene();
+  scene.num_outliers = 2;
+  const auto outcome = Calibrate(test::SynthesizeSamples(scene), {}, kTask);
+  ASSERT_EQ(outcome.problem, "");
+  const Calibration& calibration = outcome.calibration;
+  // 3 mrad and 2 mm a pose over 18 poses: 0.7 mrad and 0.5 mm on each axis; allow 4 sigma.
+  EXPECT_THAT(calibration.T_camera_lidar, IsNear(test::TestExtrinsic(), 3e-3, 6e-3));
+  EXPECT_THAT(calibration.used_ids, SizeIs(18));
+  EXPECT_THAT(calibration.rejected, SizeIs(2));
+  EXPECT_EQ(calibration.averaged.num_sets, 50);
+  EXPECT_EQ(calibration.scene_check.verdict, SceneVerdict::kNotJudged);
+}
+
+TEST(Calibrate, IsItsSteps) {
+  const auto samples = test::SynthesizeSamples(NoisyScene());
+  const auto outcome = Calibrate(samples, {}, kTask);
+  const ChosenSamples chosen = ChooseSamples(samples, kTask.options.consistency);
+  const ChosenSets sets = ChooseSets(chosen, kTask);
+  const AveragedSets averaged = AverageSets(chosen.Used(), sets.sets, kTask);
+  const BestExtrinsic refined =
+      RefineBest(chosen.Used(), kTask.camera, averaged.average, kTask.options.refinement);
+  EXPECT_EQ(outcome.calibration.T_camera_lidar.matrix(), refined.T_camera_lidar.matrix());
+  EXPECT_EQ(outcome.averaged.average.T_camera_lidar.matrix(),
+            averaged.average.T_camera_lidar.matrix());
+}
+
+TEST(Calibrate, SaysWhichStepGaveNothing) {
+  const auto samples = test::SynthesizeSamples(NoisyScene());
+  const auto two = Calibrate({samples[0], samples[1]}, {}, kTask);
+  EXPECT_EQ(two.problem, "fewer than three samples that agree with each other: 2 of 2");
+
+  test::SyntheticSamplesOptions parallel;
+  parallel.max_tilt_rad = 0.0;
+  const auto one_way = Calibrate(test::SynthesizeSamples(parallel), {}, kTask);
+  EXPECT_THAT(one_way.problem, HasSubstr("all boards face the same way"));
+  EXPECT_THAT(one_way.calibration.used_ids, IsEmpty());
+}
+
+TEST(ChooseSets, ComparesWithThePublishedCriterion) {
+  CalibrationTask task = kTask;
+  task.options.selection.criterion = SelectionCriterion::kAllPoses;
+  const ChosenSamples chosen =
+      ChooseSamples(test::SynthesizeSamples(NoisyScene()), task.options.consistency);
+  const ChosenSets sets = ChooseSets(chosen, task);
+  EXPECT_THAT(sets.sets, SizeIs(1));
+  EXPECT_THAT(sets.lowest_voq, SizeIs(50));
+}
+
+TEST(ChosenSamples, UsesWhatWasNotRejected) {
+  ChosenSamples chosen{test::SynthesizeSamples(NoisyScene()), {}, {}};
+  chosen.rejected.push_back({chosen.samples[3].id, "moved"});
+  EXPECT_THAT(chosen.Used(), SizeIs(19));
+  EXPECT_EQ(chosen.Used()[3], &chosen.samples[4]);
+}
+
+TEST(VerdictOf, IsBadWithoutEvidence) { EXPECT_EQ(VerdictOf(Calibration{}).grade, Grade::kBad); }
+
+}  // namespace
+}  // namespace voqcal

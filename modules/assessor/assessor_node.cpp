@@ -85,7 +85,7 @@ bool AssessorNode::Step() {
   if (!samples_ || !averaged_ || !refined_) return false;
   if (!IsMadeFrom(*samples_, *averaged_) || !IsMadeFrom(*samples_, *refined_)) return false;
   if (assessment_ && IsMadeFrom(*samples_, *assessment_)) return false;
-  Assess();
+  UpdateAssessment();
   Count(problem().empty() ? "assessments" : "without a result");
   Republish();
   return false;
@@ -95,7 +95,7 @@ void AssessorNode::Republish() {
   if (assessment_) bus_.Publish(rig_.channels.calib_assessment, *assessment_);
 }
 
-void AssessorNode::Assess() {
+void AssessorNode::UpdateAssessment() {
   assessment_t assessment{};
   StampMadeFrom(*samples_, &assessment);
   assessment.problem = refined_->problem;

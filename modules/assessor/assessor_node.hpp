@@ -36,7 +36,7 @@ class AssessorNode : public Module {
   std::string problem() const { return assessment_ ? assessment_->problem : ""; }
 
  private:
-  void Assess();
+  void UpdateAssessment();
   CalibrationResult Result();
 
   Rig rig_;

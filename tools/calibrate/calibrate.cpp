@@ -49,7 +49,7 @@ std::string EarlierResultIn(const std::filesystem::path& folder) {
   return std::filesystem::exists(result) ? "; " + result.string() + " is of an earlier run" : "";
 }
 
-void Calibrate(const CalibrateArgs& args) {
+void RunCalibrate(const CalibrateArgs& args) {
   const Rig rig = LoadRig(args.rig);
   if (std::filesystem::exists(args.out) && !std::filesystem::is_directory(args.out)) {
     throw std::runtime_error(args.out.string() + ": is in the way: --out names a folder");
@@ -97,5 +97,5 @@ int main(int argc, char** argv) {
          "Folder for extrinsic.yaml, result.json, report.html and samples.lcm; made if missing")
       ->required();
   app.add_flag("--json", args.is_json, "Print result.json instead of a summary");
-  return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Calibrate(args); });
+  return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::RunCalibrate(args); });
 }

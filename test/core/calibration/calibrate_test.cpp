@@ -31,7 +31,7 @@ TEST(Calibrate, FindsTheExtrinsicAndSaysWhatItIsMadeFrom) {
   ASSERT_EQ(outcome.problem, "");
   const Calibration& calibration = outcome.calibration;
   // 3 mrad and 2 mm a pose over 18 poses: 0.7 mrad and 0.5 mm on each axis; allow 4 sigma.
-  EXPECT_THAT(calibration.T_camera_lidar, IsNear(test::TestExtrinsic(), 3e-3, 6e-3));
+  EXPECT_THAT(calibration.T_camera_lidar, test::IsNear(test::TestExtrinsic(), 3e-3, 6e-3));
   EXPECT_THAT(calibration.used_ids, SizeIs(18));
   EXPECT_THAT(calibration.rejected, SizeIs(2));
   EXPECT_EQ(calibration.averaged.num_sets, 50);

@@ -201,27 +201,9 @@ void RequireBytes(std::size_t num_wanted, const LineReader& lines) {
              " bytes of points, " + std::to_string(lines.NumBytesLeft()) + " follow");
 }
 
-/// Whether `unpacked` could be filled.
-bool UnpackLzf(const char* packed,
-               std::uint32_t num_packed,
-               std::vector<std::uint8_t>* unpacked,
-               const LineReader& lines) {
-#ifdef VOQCAL_HAS_PCL
-  const auto num_unpacked = static_cast<unsigned int>(unpacked->size());
-  return pcl::lzfDecompress(packed, num_packed, unpacked->data(), num_unpacked) == num_unpacked;
-#else
-  static_cast<void>(packed);
-  static_cast<void>(num_packed);
-  static_cast<void>(unpacked);
-  lines.Fail(
-      "is compressed, which this voqcal cannot read: it was built without PCL (libpcl-dev). Build "
-      "it "
-      "again with PCL, or save the cloud as binary");
-#endif
-}
-
 /// Two sizes, then so many bytes of LZF, which never packs more than 264 bytes into 3.
-CloudTable ReadCompressed(const Header& header, const LineReader& lines) {
+CloudTable ReadCompressed([[maybe_unused]] const Header& header, const LineReader& lines) {
+#ifdef VOQCAL_HAS_PCL
   constexpr std::size_t kMaxRatio = 100;
   std::uint32_t num_bytes[2] = {0, 0};  // compressed, unpacked
   RequireBytes(sizeof(num_bytes), lines);
@@ -233,10 +215,15 @@ CloudTable ReadCompressed(const Header& header, const LineReader& lines) {
                std::to_string(wanted) + ", claims " + std::to_string(num_bytes[1]));
   }
   std::vector<std::uint8_t> unpacked(wanted);
-  if (!UnpackLzf(lines.rest() + sizeof(num_bytes), num_bytes[0], &unpacked, lines)) {
-    lines.Fail("cannot be read as a cloud: what is packed is damaged");
-  }
+  const unsigned int num_unpacked = pcl::lzfDecompress(
+      lines.rest() + sizeof(num_bytes), num_bytes[0], unpacked.data(), num_bytes[1]);
+  if (num_unpacked != wanted) lines.Fail("cannot be read as a cloud: what is packed is damaged");
   return ReadBinary(header, Layout::kFieldByField, unpacked.data());
+#else
+  lines.Fail(
+      "is compressed, and this voqcal was built without PCL, which unpacks it: install libpcl-dev "
+      "and build again, or save the cloud as plain binary");
+#endif
 }
 
 /// The header of a PCD file, its lines by their first word. Stops behind DATA.

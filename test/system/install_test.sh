@@ -25,7 +25,8 @@ for name in up down status run_rig record spy voq_selector calibrate; do
   ./command $name --help >help.txt || { echo "voqcal $name --help fails" >&2; exit 1; }
   ! grep -E 'tools/|build/release' help.txt || { echo "voqcal $name speaks of the source tree" >&2; exit 1; }
 done
-! ./command no_such 2>message.txt && grep -q "no command 'no_such'" message.txt
+! ./command no_such 2>message.txt || { echo "voqcal no_such succeeds" >&2; exit 1; }
+grep -q "no command 'no_such'" message.txt
 
 sed 's/num_poses: 40/num_poses: 6/' voqcal/config/rigs/simulated_vlp16.yaml >rig.yaml
 # Launched, it works until it is told to stop, and then ends well.

@@ -12,8 +12,8 @@ std::map<std::string, StaticFile> PageFiles() {
   if (!std::filesystem::exists(folder / "dashboard.js")) {
     return {{"",
              {"text/plain; charset=utf-8",
-              "The page was not built: tools/setup installs Node.js and its packages, tools/build "
-              "then makes the page.\n"}}};
+              "The page is missing: it is built where Node.js and its packages are installed "
+              "(in the source tree: tools/setup, then tools/build).\n"}}};
   }
   return {
       {"", {"text/html; charset=utf-8", ReadWholeFile(folder / "index.html")}},

@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#ifdef VOQCAL_HAS_PCL
 #include <pcl/io/lzf.h>
+#endif
 
 #include "files/number_text.hpp"
 
@@ -200,7 +202,8 @@ void RequireBytes(std::size_t num_wanted, const LineReader& lines) {
 }
 
 /// Two sizes, then so many bytes of LZF, which never packs more than 264 bytes into 3.
-CloudTable ReadCompressed(const Header& header, const LineReader& lines) {
+CloudTable ReadCompressed([[maybe_unused]] const Header& header, const LineReader& lines) {
+#ifdef VOQCAL_HAS_PCL
   constexpr std::size_t kMaxRatio = 100;
   std::uint32_t num_bytes[2] = {0, 0};  // compressed, unpacked
   RequireBytes(sizeof(num_bytes), lines);
@@ -216,6 +219,11 @@ CloudTable ReadCompressed(const Header& header, const LineReader& lines) {
       lines.rest() + sizeof(num_bytes), num_bytes[0], unpacked.data(), num_bytes[1]);
   if (num_unpacked != wanted) lines.Fail("cannot be read as a cloud: what is packed is damaged");
   return ReadBinary(header, Layout::kFieldByField, unpacked.data());
+#else
+  lines.Fail(
+      "is compressed, and this voqcal was built without PCL, which unpacks it: install libpcl-dev "
+      "and build again, or save the cloud as plain binary");
+#endif
 }
 
 /// The header of a PCD file, its lines by their first word. Stops behind DATA.

@@ -19,11 +19,20 @@ for program in voqcal/bin/*; do
 done
 ! grep -rlI "$(dirname "$build")" voqcal || { echo "names the source tree" >&2; exit 1; }
 
+# One command, through a link as the package has it; what it says is of this tree, not of the source's.
+ln -s voqcal/tools/voqcal command
+for name in up down status run_rig record spy voq_selector calibrate; do
+  ./command $name --help >help.txt || { echo "voqcal $name --help fails" >&2; exit 1; }
+  ! grep -E 'tools/|build/release' help.txt || { echo "voqcal $name speaks of the source tree" >&2; exit 1; }
+done
+! ./command no_such 2>message.txt || { echo "voqcal no_such succeeds" >&2; exit 1; }
+grep -q "no command 'no_such'" message.txt
+
 sed 's/num_poses: 40/num_poses: 6/' voqcal/config/rigs/simulated_vlp16.yaml >rig.yaml
 # Launched, it works until it is told to stop, and then ends well.
 voqcal/tools/isolated timeout --preserve-status --signal=INT 3 voqcal/modules/voq_selector/launch rig.yaml
 
 voqcal/tools/isolated voqcal/tools/run_rig rig.yaml --session live --record
-voqcal/bin/calibrate --rig rig.yaml --log live/raw.lcm --out offline
+./command calibrate --rig rig.yaml --log live/raw.lcm --out offline
 cmp live/extrinsic.yaml offline/extrinsic.yaml
 [ -s offline/report.html ]

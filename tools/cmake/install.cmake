@@ -12,7 +12,7 @@ foreach(script modules/launch_module ${launch_scripts})
   install(PROGRAMS ${script} DESTINATION ${folder})
 endforeach()
 install(PROGRAMS tools/up tools/status tools/down tools/run_rig tools/record tools/spy tools/isolated
-                 tools/import_ros tools/export_mcap
+                 tools/import_ros tools/export_mcap tools/voqcal
   DESTINATION tools)
 install(DIRECTORY tools/common/ DESTINATION tools/common FILES_MATCHING PATTERN *.sh)
 # Node.js fetches its libraries there: npm ci.
@@ -36,6 +36,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # the libraries, by dpkg-shlibdeps
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "liblcm-bin, supervisor, iproute2")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-java, libjchart2d-java, default-jre, python3-jinja2, python3-matplotlib, nodejs, npm")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "liblcm-bin, supervisor, iproute2, python3, python3-jinja2")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-java, libjchart2d-java, default-jre, python3-matplotlib, nodejs, npm")
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/tools/cmake/link_command.cmake)
 include(CPack)

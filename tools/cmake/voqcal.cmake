@@ -19,12 +19,27 @@ add_compile_options(-ffp-contract=off)
 # Everything that is installed, which is what tools/build makes; `all` has tests and benchmarks too.
 add_custom_target(programs)
 
+# What most files include, parsed once: a third of the time to build. The preset dev does without, so that a
+# file that forgets an include does not compile.
+option(VOQCAL_PRECOMPILE "Precompile the headers that most files include" ON)
+if(VOQCAL_PRECOMPILE)
+  add_library(voqcal_precompiled STATIC ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+  target_precompile_headers(voqcal_precompiled PRIVATE
+    <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <optional> <sstream> <stdexcept>
+    <string> <vector> <Eigen/Dense>)
+  target_include_directories(voqcal_precompiled SYSTEM PRIVATE
+    $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
+endif()
+
 # Warnings and include root ("core/...", "messaging/...") of one target of ours.
 function(voqcal_target_defaults target)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/modules)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow)
   if(VOQCAL_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(VOQCAL_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM voqcal_precompiled)
   endif()
 endfunction()
 

@@ -4,6 +4,16 @@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 bin=${VOQCAL_BIN:-$root/bin}
 [ -d "$bin" ] || bin=$root/build/release/bin
+# What messages call things: the source tree has set-up and build, an installed one the command voqcal.
+if [ -e "$root/CMakeLists.txt" ]; then
+  tool_prefix=tools/ program_prefix=build/release/bin/
+  how_to_install() { echo "tools/setup installs it"; }  # PACKAGE
+  how_to_build="run tools/build"
+else
+  tool_prefix='voqcal ' program_prefix='voqcal '
+  how_to_install() { echo "apt-get install $1 installs it"; }
+  how_to_build="install the package again"
+fi
 
 drivers=(lidar_driver camera_driver)
 # In the order of the flow; every one of them reads what a driver, or one before it, says.
@@ -16,7 +26,7 @@ fail() {  # MESSAGE [STATUS]
 }
 
 require_programs() {
-  [ -x "$bin/check_rig" ] || fail "voqcal is not built yet: run tools/build"
+  [ -x "$bin/check_rig" ] || fail "voqcal is not built yet: $how_to_build"
 }
 
 is_running() {  # SESSION: its supervisor answers; one that was killed leaves socket and log behind

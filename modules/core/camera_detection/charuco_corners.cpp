@@ -3,31 +3,28 @@
 #include <algorithm>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include <Eigen/SVD>
-#include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/camera_detection/charuco_opencv.hpp"
 #include "core/camera_detection/missing_corners.hpp"
 
 namespace voqcal {
 namespace {
 
-// The dictionary's place in the list is OpenCV's number of it.
-cv::Ptr<cv::aruco::Dictionary> DictionaryOf(const BoardSpec& board) {
+CharucoLayout LayoutOf(const BoardSpec& board) {
+  CharucoLayout layout;
+  layout.num_squares_x = board.num_corners_x + 1;
+  layout.num_squares_y = board.num_corners_y + 1;
+  layout.square_m = static_cast<float>(board.square_m);
+  layout.marker_m = static_cast<float>(board.marker_m);
+  // The dictionary's place in the list is OpenCV's number of it.
   const auto& names = CharucoDictionaries();
   const auto name = std::find(names.begin(), names.end(), board.dictionary);
-  return cv::aruco::getPredefinedDictionary(static_cast<int>(name - names.begin()));
-}
-
-cv::Ptr<cv::aruco::CharucoBoard> CharucoOf(const BoardSpec& board) {
-  return cv::aruco::CharucoBoard::create(board.num_corners_x + 1,
-                                         board.num_corners_y + 1,
-                                         static_cast<float>(board.square_m),
-                                         static_cast<float>(board.marker_m),
-                                         DictionaryOf(board));
+  layout.dictionary = static_cast<int>(name - names.begin());
+  return layout;
 }
 
 // Whether the seen corners span a plane: at least a square's width off any line.
@@ -44,25 +41,12 @@ bool IsPlanar(const std::vector<Eigen::Vector3d>& seen_board_m, double square_m)
 // Corners beside at least one marker: where OpenCV puts them by the markers nearby, then to
 // sub-pixel accuracy within the rim that markers leave free, and only where the four squares
 // differ.
-std::pair<std::vector<cv::Point2f>, std::vector<int>> CornersBetween(
-    const std::vector<std::vector<cv::Point2f>>& markers,
-    const std::vector<int>& marker_ids,
-    const cv::Mat& grey,
-    const cv::Ptr<cv::aruco::CharucoBoard>& charuco,
-    const BoardSpec& board) {
-  constexpr int kMinMarkers = 1;
+CharucoCorners CornersBetween(const CharucoMarkers& markers,
+                              const cv::Mat& grey,
+                              const CharucoLayout& layout,
+                              const BoardSpec& board) {
   constexpr double kMaxShiftSquares = 0.1;
-  std::vector<cv::Point2f> near;
-  std::vector<int> near_ids;
-  cv::aruco::interpolateCornersCharuco(markers,
-                                       marker_ids,
-                                       grey,
-                                       charuco,
-                                       near,
-                                       near_ids,
-                                       cv::noArray(),
-                                       cv::noArray(),
-                                       kMinMarkers);
+  const auto [near, near_ids] = CornersBesideMarkers(grey, markers, layout);
   if (near.size() < 4) return {};
   // From the board, in squares, to the image: good enough for the size and shade of squares.
   std::vector<cv::Point2f> near_squares;
@@ -71,7 +55,7 @@ std::pair<std::vector<cv::Point2f>, std::vector<int>> CornersBetween(
   }
   const cv::Mat H = cv::findHomography(near_squares, near);
   if (H.empty()) return {};
-  std::pair<std::vector<cv::Point2f>, std::vector<int>> kept;
+  CharucoCorners kept;
   for (std::size_t n = 0; n < near.size(); ++n) {
     std::vector<cv::Point2f> ends;
     const cv::Point2f at = near_squares[n];
@@ -96,8 +80,8 @@ std::pair<std::vector<cv::Point2f>, std::vector<int>> CornersBetween(
     // A quarter of these steps is in the middle of the rim.
     const auto rim = static_cast<float>(2 * rim_squares);
     if (QuarterContrast(grey, corner[0], rim * step_x, rim * step_y) == 0) continue;
-    kept.first.push_back(corner[0]);
-    kept.second.push_back(near_ids[n]);
+    kept.corners_px.push_back(corner[0]);
+    kept.ids.push_back(near_ids[n]);
   }
   return kept;
 }
@@ -106,22 +90,14 @@ std::pair<std::vector<cv::Point2f>, std::vector<int>> CornersBetween(
 
 Expected<std::vector<Eigen::Vector2d>, CameraBoardMiss> FindCharucoCorners(const cv::Mat& grey,
                                                                            const BoardSpec& board) {
-  const cv::Ptr<cv::aruco::CharucoBoard> charuco = CharucoOf(board);
-  std::vector<std::vector<cv::Point2f>> markers;
-  std::vector<std::vector<cv::Point2f>> rejected;
-  std::vector<int> marker_ids;
-  cv::aruco::detectMarkers(grey,
-                           charuco->dictionary,
-                           markers,
-                           marker_ids,
-                           cv::aruco::DetectorParameters::create(),
-                           rejected);
-  if (markers.empty()) {
+  const CharucoLayout layout = LayoutOf(board);
+  const CharucoMarkers markers = DetectCharucoMarkers(grey, layout);
+  if (markers.ids.empty()) {
     return CameraBoardMiss{CameraBoardFault::kNoBoard,
-                           "none of " + std::to_string(rejected.size()) +
+                           "none of " + std::to_string(markers.num_rejected) +
                                " dark squares is a marker of " + board.dictionary};
   }
-  const auto [found, ids] = CornersBetween(markers, marker_ids, grey, charuco, board);
+  const auto [found, ids] = CornersBetween(markers, grey, layout, board);
 
   const std::vector<Eigen::Vector3d> all_board_m = board.InnerCornersBoardM();
   std::vector<Eigen::Vector2d> corners_px(
@@ -139,18 +115,16 @@ Expected<std::vector<Eigen::Vector2d>, CameraBoardMiss> FindCharucoCorners(const
   if (seen_board_m.size() < kMinCorners || !IsPlanar(seen_board_m, board.square_m)) {
     return CameraBoardMiss{
         CameraBoardFault::kPartlyHidden,
-        std::to_string(markers.size()) + " markers and " + std::to_string(seen_board_m.size()) +
+        std::to_string(markers.ids.size()) + " markers and " + std::to_string(seen_board_m.size()) +
             " of " + std::to_string(all_board_m.size()) + " corners: at least 6, not on a line"};
   }
   return corners_px;
 }
 
 cv::Mat DrawCharuco(const BoardSpec& board, int pixels_per_square) {
-  cv::Mat image;
-  CharucoOf(board)->draw({(board.num_corners_x + 1) * pixels_per_square,
-                          (board.num_corners_y + 1) * pixels_per_square},
-                         image);
-  return image;
+  return DrawCharucoLayout(LayoutOf(board),
+                           {(board.num_corners_x + 1) * pixels_per_square,
+                            (board.num_corners_y + 1) * pixels_per_square});
 }
 
 }  // namespace voqcal

@@ -1,0 +1,1 @@
+// The source of voqcal_precompiled, which has headers only (voqcal.cmake).

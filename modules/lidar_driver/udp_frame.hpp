@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/lidar/packet.hpp"
+#include "core/lidar_packets/packet.hpp"
 
 namespace voqcal {
 

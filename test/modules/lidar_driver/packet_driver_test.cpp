@@ -34,7 +34,7 @@ std::int64_t UtimeOf(std::size_t i) {
 class PacketDriverTest : public ::testing::Test {
  protected:
   PacketDriverTest() {
-    rig_.lidar_driver.source = DriverSource::kVlp16;
+    rig_.lidar_driver.source = LidarDriverOptions::Source::kSensor;
     rig_.lidar_sensor.packets.split_azimuth_rad = 0.0;
     rig_.lidar_sensor.is_unpaced = true;
   }
@@ -170,9 +170,9 @@ TEST_F(PacketDriverTest, PublishesThePacketsThemselvesIfAskedTo) {
 }
 
 TEST_F(PacketDriverTest, TakesOffsetsOffTheRanges) {
-  rig_.lidar_sensor.packets.vlp16.distance_offset_m = 0.25;
-  rig_.lidar_sensor.packets.vlp16.ring_offsets_m.assign(16, 0.0);
-  rig_.lidar_sensor.packets.vlp16.ring_offsets_m[2] = -0.5;
+  rig_.lidar_sensor.packets.unit.distance_offset_m = 0.25;
+  rig_.lidar_sensor.packets.unit.ring_offsets_m.assign(16, 0.0);
+  rig_.lidar_sensor.packets.unit.ring_offsets_m[2] = -0.5;
   Capture(test::Vlp16Turns(75));
   Run();
   for (const LidarPoint& point : Cloud(0).points) {
@@ -195,8 +195,7 @@ TEST_F(PacketDriverTest, TakesTheBiasOfAnEarlierResultOffTheRanges) {
 }
 
 TEST_F(PacketDriverTest, ReadsASpectrumScanOnItsOwnPort) {
-  rig_.lidar_driver.source = DriverSource::kSpectrumScan;
-  rig_.lidar_sensor.packets.model = LidarModel::kSpectrumScan;
+  rig_.lidar_sensor.packets.protocol = FindLidarProtocol("spectrum_scan");
   test::PcapFile file;
   // Three packets of 20 degrees each make a scan; the fourth begins anew at 60 degrees.
   for (int i = 0; i < 6; ++i) {

@@ -1,7 +1,9 @@
 #include "core/lidar_packets/lidar_protocols.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "core/lidar_packets/hesai.hpp"
 #include "core/lidar_packets/spectrum_scan.hpp"
 #include "core/lidar_packets/velodyne.hpp"
 
@@ -56,6 +58,24 @@ LidarProtocol Hdl64e() {
   return protocol;
 }
 
+LidarProtocol Hesai(std::string name,
+                    std::string title,
+                    int num_rings,
+                    std::vector<std::size_t> packet_bytes,
+                    PacketDecoder (*make_decoder)(const LidarUnit&)) {
+  constexpr double kOverlapRad =
+      20.0 * M_PI / 180.0;  // QT: beams to both sides by up to 10 degrees
+  return Spinning(std::move(name),
+                  "",
+                  std::move(title),
+                  num_rings,
+                  std::move(packet_bytes),
+                  kEndlessClockUs,
+                  kOverlapRad,
+                  "Hesai's angle correction file, CSV",
+                  make_decoder);
+}
+
 LidarProtocol SpectrumScan() {
   LidarProtocol protocol;
   protocol.name = "baraja_spectrum_scan";
@@ -80,6 +100,14 @@ const std::vector<LidarProtocol>& LidarProtocols() {
       Velodyne("velodyne_vls128", "", "Velodyne VLS-128", 128, &MakeVelodyneVls128),
       Velodyne("velodyne_hdl32", "velodyne_hdl32e", "Velodyne HDL-32E", 32, &MakeVelodyneHdl32e),
       Hdl64e(),
+      Hesai("hesai_40p", "Hesai Pandar40P", 40, {1262, 1266}, &MakeHesai40p),
+      Hesai("hesai_64", "Hesai Pandar64", 64, {1194, 1198}, &MakeHesai64),
+      Hesai("hesai_qt64", "Hesai PandarQT", 64, {1072}, &MakeHesaiQt64),
+      Hesai("hesai_qt128", "Hesai QT128", 128, {1127}, &MakeHesaiQt128),
+      Hesai("hesai_xt16", "Hesai PandarXT-16", 16, {568}, &MakeHesaiXt16),
+      Hesai("hesai_xt32", "Hesai PandarXT-32", 32, {1080}, &MakeHesaiXt32),
+      Hesai("hesai_xt32m", "Hesai PandarXT-32M", 32, {820}, &MakeHesaiXt32m),
+      Hesai("hesai_ot128", "Hesai OT128", 128, {861, 893}, &MakeHesaiOt128),
       SpectrumScan(),
   };
   return protocols;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/lidar_packets/hesai.hpp"
+#include "core/lidar_packets/ouster.hpp"
 #include "core/lidar_packets/spectrum_scan.hpp"
 #include "core/lidar_packets/velodyne.hpp"
 
@@ -76,6 +77,20 @@ LidarProtocol Hesai(std::string name,
                   make_decoder);
 }
 
+LidarProtocol Ouster() {
+  LidarProtocol protocol;
+  protocol.name = "ouster";
+  protocol.title = "Ouster OS-0, OS-1, OS-2";
+  protocol.port = 7502;
+  protocol.clock_us = kEndlessClockUs;
+  protocol.has_utc = true;
+  protocol.sweep_end = SweepEnd::kAtFrame;
+  protocol.calibration = "the sensor's metadata, JSON";
+  protocol.needs_calibration = true;
+  protocol.make_decoder = &MakeOuster;
+  return protocol;
+}
+
 LidarProtocol SpectrumScan() {
   LidarProtocol protocol;
   protocol.name = "baraja_spectrum_scan";
@@ -108,6 +123,7 @@ const std::vector<LidarProtocol>& LidarProtocols() {
       Hesai("hesai_xt32", "Hesai PandarXT-32", 32, {1080}, &MakeHesaiXt32),
       Hesai("hesai_xt32m", "Hesai PandarXT-32M", 32, {820}, &MakeHesaiXt32m),
       Hesai("hesai_ot128", "Hesai OT128", 128, {861, 893}, &MakeHesaiOt128),
+      Ouster(),
       SpectrumScan(),
   };
   return protocols;

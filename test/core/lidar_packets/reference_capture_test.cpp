@@ -1,0 +1,147 @@
+// Real lidars' packets against another decoder's points of one sweep: every point of the reference
+// is one of ours, and those that we have besides are those that the reference leaves out.
+//
+// The references have x, y, z alone, from which range and angles follow. What they leave out, by
+// their own settings: echoes nearer than `min_range_m`, and of a beam's two echoes the nearer where
+// they are less than 0.1 m apart. They end sweeps at azimuth 0, each beam for itself.
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/capture_file.hpp"
+#include "support/real_data.hpp"
+
+namespace voqcal {
+namespace {
+
+struct Case {
+  std::string model;
+  std::string reference;
+  int num_points = 0;  // of the reference
+  double min_range_m = 0.0;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.model; }
+
+// A point by what decides: its range in millimetres, then its angles.
+struct Measured {
+  long range_mm = 0;
+  double azimuth_deg = 0.0;
+  double elevation_deg = 0.0;
+};
+
+Measured MeasuredAt(const Eigen::Vector3d& position_m) {
+  constexpr double kDegPerRad = 180.0 / M_PI;
+  const double range_m = position_m.norm();
+  return {std::lround(1000 * range_m),
+          std::atan2(position_m.x(), position_m.y()) * kDegPerRad,
+          std::asin(position_m.z() / range_m) * kDegPerRad};
+}
+
+bool IsSame(const Measured& a, const Measured& b) {
+  constexpr double kMaxDeg = 0.01;
+  const double turned_deg = std::remainder(a.azimuth_deg - b.azimuth_deg, 360.0);
+  return a.range_mm == b.range_mm && std::abs(turned_deg) < kMaxDeg &&
+         std::abs(a.elevation_deg - b.elevation_deg) < kMaxDeg;
+}
+
+std::vector<Measured> ReferencePoints(const std::filesystem::path& path) {
+  const std::string bytes = test::ReadBytes(path);
+  const std::string marker = "DATA binary\n";
+  std::vector<Measured> points;
+  for (std::size_t at = bytes.find(marker) + marker.size(); at + 12 <= bytes.size(); at += 12) {
+    points.push_back(MeasuredAt({test::FieldAt<float>(bytes, at),
+                                 test::FieldAt<float>(bytes, at + 4),
+                                 test::FieldAt<float>(bytes, at + 8)}));
+  }
+  return points;
+}
+
+// True if the reference's settings leave it out: see above.
+bool IsLeftOut(const std::vector<PacketReturn>& returns, std::size_t i, double min_range_m) {
+  constexpr double kMinApartM = 0.1;
+  const PacketReturn& echo = returns[i];
+  if (echo.distance_m < min_range_m - 1e-6) return true;
+  const bool has_next = echo.number < echo.of_how_many;
+  return has_next && returns[i + 1].distance_m - echo.distance_m < kMinApartM - 1e-6;
+}
+
+std::vector<Measured> PointsOf(const TimedSweep& sweep, double min_range_m) {
+  std::vector<Measured> points;
+  for (std::size_t i = 0; i < sweep.returns.size(); ++i) {
+    if (IsLeftOut(sweep.returns, i, min_range_m)) continue;
+    points.push_back(MeasuredAt(sweep.returns[i].point.position_m.cast<double>()));
+  }
+  return points;
+}
+
+// How many of `points` are one of `reference`, each of which is taken once.
+int NumFound(std::vector<Measured> points, std::vector<Measured> reference) {
+  const auto by_range = [](const Measured& a, const Measured& b) {
+    return a.range_mm < b.range_mm;
+  };
+  std::sort(reference.begin(), reference.end(), by_range);
+  std::vector<bool> is_taken(reference.size(), false);
+  int num_found = 0;
+  for (const Measured& point : points) {
+    const auto [begin, end] = std::equal_range(reference.begin(), reference.end(), point, by_range);
+    for (auto other = begin; other != end; ++other) {
+      const auto place = static_cast<std::size_t>(other - reference.begin());
+      if (is_taken[place] || !IsSame(point, *other)) continue;
+      is_taken[place] = true;
+      ++num_found;
+      break;
+    }
+  }
+  return num_found;
+}
+
+class HesaiCapture : public ::testing::TestWithParam<Case> {};
+
+TEST_P(HesaiCapture, HasTheReferencesPointsAndNoOthers) {
+  const auto data = test::RealDataFolder();
+  if (!data) GTEST_SKIP() << "no real data on this machine";
+  const Case& c = GetParam();
+  const std::filesystem::path folder = *data / "packets" / "nebula";
+  const auto reference = ReferencePoints(folder / c.reference);
+  ASSERT_EQ(reference.size(), static_cast<std::size_t>(c.num_points));
+  LidarPacketOptions options;
+  options.protocol = FindLidarProtocol(c.model);
+  options.split_azimuth_rad = 0.0;
+  options.returns = ReturnChoice::kBoth;
+  const auto decoded = test::DecodeCapture(folder / (c.model + ".pcap"), 2368, options);
+  EXPECT_EQ(decoded.counts.count("packets lost"), 0U);
+  EXPECT_EQ(decoded.counts.count("clock restarts"), 0U);
+  int num_found = 0;
+  std::size_t num_of_sweep = 0;
+  for (const TimedSweep& sweep : decoded.sweeps) {
+    const auto points = PointsOf(sweep, c.min_range_m);
+    if (std::abs(static_cast<double>(points.size()) / c.num_points - 1.0) > 0.2) continue;
+    const int num = NumFound(points, reference);
+    if (num > num_found) std::tie(num_found, num_of_sweep) = std::make_tuple(num, points.size());
+  }
+  std::cout << c.model << ": " << num_found << " of " << c.num_points << ", sweep has "
+            << num_of_sweep << '\n';
+  EXPECT_EQ(num_found, c.num_points);
+  EXPECT_EQ(num_of_sweep, static_cast<std::size_t>(c.num_points));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All,
+    HesaiCapture,
+    ::testing::Values(Case{"hesai_40p", "hesai_40p_1673400149711850138.pcd", 56762, 0.3},
+                      Case{"hesai_64", "hesai_64_1673403880898440686.pcd", 93591, 0.3},
+                      Case{"hesai_qt64", "hesai_qt64_1673401196087570870.pcd", 34158, 0.1},
+                      Case{"hesai_qt128", "hesai_qt128_1730273789174759609.pcd", 73560, 0.3},
+                      Case{"hesai_xt16", "hesai_xt16_1732848128093928016.pcd", 26287, 0.05},
+                      Case{"hesai_xt32", "hesai_xt32_1673400678101968885.pcd", 63021, 0.05}),
+    [](const auto& param_info) { return param_info.param.model; });
+
+}  // namespace
+}  // namespace voqcal

@@ -105,8 +105,8 @@ BeamTable ReadBeamCsv(const std::string& text, std::size_t num_beams) {
 PacketReturn MeasuredBy(
     const Beam& beam, double head_rad, double distance_m, int intensity, ZeroAzimuth zero) {
   const double clockwise_rad = head_rad + beam.azimuth_rad;
-  const double from_x_rad =
-      zero == ZeroAzimuth::kAlongX ? -clockwise_rad : M_PI / 2 - clockwise_rad;
+  const double zero_rad = zero == ZeroAzimuth::kAlongX ? 0.0 : M_PI / 2;
+  const double from_x_rad = zero_rad - clockwise_rad;
   const double cos_azimuth = std::cos(from_x_rad);
   const double sin_azimuth = std::sin(from_x_rad);
   const double cos_elevation = std::cos(beam.elevation_rad);
@@ -119,6 +119,13 @@ PacketReturn MeasuredBy(
                       across_m * sin_azimuth + beam.beside_axis_m * cos_azimuth,
                       range_m * sin_elevation + beam.above_centre_m * cos_elevation)
           .cast<float>();
+  if (beam.ahead_of_axis_m != 0.0) {
+    const double head_from_x_rad = zero_rad - head_rad;
+    result.point.position_m +=
+        (beam.ahead_of_axis_m *
+         Eigen::Vector3d(std::cos(head_from_x_rad), std::sin(head_from_x_rad), 0))
+            .cast<float>();
+  }
   result.point.intensity = static_cast<float>(intensity);
   result.point.ring = static_cast<std::uint16_t>(beam.ring);
   result.azimuth_rad = Wrapped(clockwise_rad);

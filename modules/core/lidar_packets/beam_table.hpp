@@ -13,11 +13,12 @@ namespace voqcal {
 /// Where one laser of a spinning lidar points, and what else its calibration says.
 struct Beam {
   double elevation_rad = 0.0;
-  double azimuth_rad = 0.0;     ///< Added to the head's, clockwise.
-  double range_m = 0.0;         ///< Added to every range.
-  double beside_axis_m = 0.0;   ///< Its origin, to the beam's left seen from above.
-  double above_centre_m = 0.0;  ///< Its origin, across the beam.
-  int ring = 0;                 ///< Scan line, counted from the lowest.
+  double azimuth_rad = 0.0;      ///< Added to the head's, clockwise.
+  double range_m = 0.0;          ///< Added to every range.
+  double beside_axis_m = 0.0;    ///< Its origin, to the beam's left seen from above.
+  double above_centre_m = 0.0;   ///< Its origin, across the beam.
+  double ahead_of_axis_m = 0.0;  ///< Its origin, where the head points.
+  int ring = 0;                  ///< Scan line, counted from the lowest.
 };
 
 /// By the order in which packets have them.

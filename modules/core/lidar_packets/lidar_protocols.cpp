@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "core/lidar_packets/hesai.hpp"
+#include "core/lidar_packets/livox.hpp"
 #include "core/lidar_packets/ouster.hpp"
+#include "core/lidar_packets/robosense.hpp"
 #include "core/lidar_packets/spectrum_scan.hpp"
 #include "core/lidar_packets/velodyne.hpp"
 
@@ -91,6 +93,42 @@ LidarProtocol Ouster() {
   return protocol;
 }
 
+LidarProtocol Robosense(std::string name,
+                        std::string title,
+                        int num_rings,
+                        PacketDecoder (*make_decoder)(const LidarUnit&)) {
+  constexpr double kOverlapRad = 20.0 * M_PI / 180.0;
+  LidarProtocol protocol = Spinning(std::move(name),
+                                    "",
+                                    std::move(title),
+                                    num_rings,
+                                    {1248},
+                                    kEndlessClockUs,
+                                    kOverlapRad,
+                                    "RoboSense's angle file, CSV",
+                                    make_decoder);
+  protocol.port = 6699;
+  return protocol;
+}
+
+LidarProtocol Livox(std::string name,
+                    std::string title,
+                    int port,
+                    std::vector<std::size_t> packet_bytes,
+                    PacketDecoder (*make_decoder)(const LidarUnit&)) {
+  LidarProtocol protocol;
+  protocol.name = std::move(name);
+  protocol.title = std::move(title);
+  protocol.has_rings = false;
+  protocol.port = port;
+  protocol.packet_bytes = std::move(packet_bytes);
+  protocol.clock_us = kEndlessClockUs;
+  protocol.has_utc = true;
+  protocol.sweep_end = SweepEnd::kAtTime;
+  protocol.make_decoder = make_decoder;
+  return protocol;
+}
+
 LidarProtocol SpectrumScan() {
   LidarProtocol protocol;
   protocol.name = "baraja_spectrum_scan";
@@ -124,6 +162,13 @@ const std::vector<LidarProtocol>& LidarProtocols() {
       Hesai("hesai_xt32m", "Hesai PandarXT-32M", 32, {820}, &MakeHesaiXt32m),
       Hesai("hesai_ot128", "Hesai OT128", 128, {861, 893}, &MakeHesaiOt128),
       Ouster(),
+      Robosense("robosense_16", "RoboSense RS-LiDAR-16", 16, &MakeRobosense16),
+      Robosense("robosense_32", "RoboSense RS-LiDAR-32", 32, &MakeRobosense32),
+      Robosense("robosense_helios", "RoboSense Helios", 32, &MakeRobosenseHelios),
+      Robosense("robosense_bpearl", "RoboSense Bpearl", 32, &MakeRobosenseBpearl),
+      Livox("livox_mid360", "Livox Mid-360", 56301, {1380}, &MakeLivoxMid360),
+      Livox("livox_hap", "Livox HAP", 57000, {1380}, &MakeLivoxMid360),
+      Livox("livox_avia", "Livox Avia, Horizon", 60001, {1362, 1278}, &MakeLivoxAvia),
       SpectrumScan(),
   };
   return protocols;

@@ -20,10 +20,11 @@ struct PacketBytes {
 
 /// Why a datagram has no points.
 enum class PacketFault {
-  kWrongSize,     ///< Not the length of a data packet.
-  kAlien,         ///< The right length, but of another sensor or kind.
-  kUnknownMode,   ///< Of this sensor, in a return mode that is not known.
-  kWithoutPoints  ///< Of this sensor, but it measured nothing: motion, position, calibration.
+  kWrongSize,          ///< Not the length of a data packet.
+  kAlien,              ///< The right length, but of another sensor or kind.
+  kUnknownMode,        ///< Of this sensor, in a return mode that is not known.
+  kWithoutPoints,      ///< Of this sensor, but it measured nothing: motion, position, calibration.
+  kWithoutCalibration  ///< Of this sensor, whose angles are not known yet.
 };
 
 std::string ToString(PacketFault fault);  ///< "packets of a wrong size", ... as they are counted.

@@ -61,6 +61,8 @@ std::string ToString(PacketFault fault) {
       return "packets in an unknown return mode";
     case PacketFault::kWithoutPoints:
       return "packets without points";
+    case PacketFault::kWithoutCalibration:
+      return "packets before the sensor's calibration came";
   }
   return "packets with an unknown fault";
 }
@@ -100,6 +102,7 @@ std::vector<TimedSweep> LidarPacketStream::Add(PacketBytes bytes, std::int64_t h
   auto packet = decode_(bytes);
   if (!packet) {
     ++counts_[ToString(packet.error())];
+    is_calibration_missing_ |= packet.error() == PacketFault::kWithoutCalibration;
     if (packet.error() != PacketFault::kWithoutPoints) ++sizes_[bytes.size];
     return ended;
   }
@@ -136,8 +139,12 @@ std::vector<TimedSweep> LidarPacketStream::Finish() {
 }
 
 std::string LidarPacketStream::WrongLidar() const {
-  const bool is_known = counts_.count("packets") > 0 || sizes_.empty();
-  return is_known ? std::string() : WrongLidarText(*options_.protocol, sizes_);
+  if (counts_.count("packets") > 0 || sizes_.empty()) return {};
+  if (is_calibration_missing_) {
+    return "no calibration of this " + options_.protocol->title + " came: capture its " +
+           "state packets too, or give its file (" + options_.protocol->calibration + ')';
+  }
+  return WrongLidarText(*options_.protocol, sizes_);
 }
 
 bool LidarPacketStream::IsSecondCopy(PacketBytes bytes) {

@@ -86,6 +86,7 @@ class LidarPacketStream {
   std::optional<std::int64_t> released_utime_;
   std::optional<std::uint32_t> released_number_;
   std::map<std::string, std::int64_t> counts_;
+  bool is_calibration_missing_ = false;
   std::map<std::size_t, std::int64_t> sizes_;  // of datagrams that are none of the sensor's
 };
 

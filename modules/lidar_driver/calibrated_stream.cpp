@@ -25,8 +25,8 @@ LidarPacketStream CalibratedStream(LidarPacketOptions options,
   try {
     return LidarPacketStream(options);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(calibration.string() + ": " + error.what() + " (expected: " +
-                             protocol.calibration + ')');
+    throw std::runtime_error(calibration.string() + ": " + error.what() +
+                             " (expected: " + protocol.calibration + ')');
   }
 }
 

@@ -7,6 +7,7 @@
 #include <pcap/pcap.h>
 #include <spdlog/spdlog.h>
 
+#include "lidar_driver/ip_fragments.hpp"
 #include "lidar_driver/udp_frame.hpp"
 
 namespace voqcal {
@@ -56,7 +57,11 @@ class PcapPackets : public PacketSource {
     has_ended_ = status != 1;
     if (status == PCAP_ERROR) NoteDamage();
     if (has_ended_) return std::nullopt;
-    const auto payload = FindUdpPayload(link_, {data, header->caplen});
+    const PacketBytes frame{data, header->caplen};
+    auto payload = FindUdpPayload(link_, frame);
+    const auto ip = payload ? std::nullopt : FindIp(link_, frame);
+    const auto joined = ip ? fragments_.Add(*ip) : std::nullopt;
+    if (joined) payload = FindUdpPayload(FrameLink::kIp, {joined->data(), joined->size()});
     if (!payload) {
       ++counts_["frames without UDP"];
       return std::nullopt;
@@ -92,6 +97,7 @@ class PcapPackets : public PacketSource {
   int port_;
   std::unique_ptr<pcap_t, PcapCloser> pcap_;
   FrameLink link_ = FrameLink::kEthernet;
+  IpFragments fragments_;
   bool has_ended_ = false;
   std::map<std::string, std::int64_t> counts_;
   std::map<int, std::int64_t> other_ports_;  // how many packets went there

@@ -21,6 +21,9 @@ struct UdpPayload {
   PacketBytes bytes;
 };
 
+/// A captured frame's IPv4 packet, if it has one.
+std::optional<PacketBytes> FindIp(FrameLink link, PacketBytes frame);
+
 /// The UDP datagram of a captured frame; nothing if it holds none, is a fragment, or is no IPv4. A
 /// payload that the capture cut short is what there is of it.
 std::optional<UdpPayload> FindUdpPayload(FrameLink link, PacketBytes frame);

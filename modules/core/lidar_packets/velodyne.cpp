@@ -99,16 +99,18 @@ class Decoder {
   }
 
   // How far the head turns during a group, centidegrees. The last of a packet takes the one before
-  // as its measure; the only one, the packet before.
+  // as its measure, and so does one before a jump, of a sensor that looks at a part of the turn;
+  // the only one takes the packet before.
   int Advance(const View& view, int i, int group) const {
     constexpr int kMaxAdvance = 200;  // 20 turns a second
     const int num_groups = kNumBlocks / group;
-    if (num_groups == 1) {
-      const int turned = (view.Azimuth(0) - last_azimuth_ + kTurn) % kTurn;
-      return last_azimuth_ >= 0 && turned <= kMaxAdvance ? turned : 0;
-    }
-    const int from = i + 1 < num_groups ? i : i - 1;
-    return (view.Azimuth((from + 1) * group) - view.Azimuth(from * group) + kTurn) % kTurn;
+    const auto turned = [&view, group](int from) {
+      return (view.Azimuth((from + 1) * group) - view.Azimuth(from * group) + kTurn) % kTurn;
+    };
+    const int since_last = (view.Azimuth(0) - last_azimuth_ + kTurn) % kTurn;
+    if (i + 1 < num_groups && turned(i) <= kMaxAdvance) return turned(i);
+    if (i > 0 && turned(i - 1) <= kMaxAdvance) return turned(i - 1);
+    return last_azimuth_ >= 0 && since_last <= kMaxAdvance ? since_last : 0;
   }
 
   void AppendGroup(const View& view,

@@ -97,7 +97,7 @@ LidarProtocol Robosense(std::string name,
                         std::string title,
                         int num_rings,
                         PacketDecoder (*make_decoder)(const LidarUnit&)) {
-  constexpr double kOverlapRad = 20.0 * M_PI / 180.0;
+  constexpr double kOverlapRad = 25.0 * M_PI / 180.0;
   LidarProtocol protocol = Spinning(std::move(name),
                                     "",
                                     std::move(title),

@@ -67,7 +67,7 @@ LidarProtocol Hesai(std::string name,
                     std::vector<std::size_t> packet_bytes,
                     PacketDecoder (*make_decoder)(const LidarUnit&)) {
   constexpr double kOverlapRad =
-      20.0 * M_PI / 180.0;  // QT: beams to both sides by up to 10 degrees
+      25.0 * M_PI / 180.0;  // QT128: beams up to 10.1 degrees to either side
   return Spinning(std::move(name),
                   "",
                   std::move(title),

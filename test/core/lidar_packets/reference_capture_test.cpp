@@ -143,9 +143,13 @@ TEST_P(HesaiCapture, HasTheReferencesPointsAndNoOthers) {
   EXPECT_GE(num_sure + either.size() / 2, reference.size());
   points.insert(points.end(), one_of_two.begin(), one_of_two.end());
   points.insert(points.end(), either.begin(), either.end());
-  // A beam that points exactly to azimuth 0 begins a sweep of ours, and ends one of the reference.
-  for (const Measured& point : PointsOf(decoded.sweeps[c.sweep + 1], c.min_range_m, Fate::kIn)) {
-    if (std::abs(point.azimuth_deg) < 0.005) points.push_back(point);
+  // Where sweeps end, a beam may be counted to the one before or after: at exactly 0 degrees
+  // (XT16), and the QT128's outermost beam just before it.
+  constexpr double kBorderDeg = 0.15;
+  for (const std::size_t neighbour : {c.sweep - 1, c.sweep + 1}) {
+    for (const Measured& point : PointsOf(decoded.sweeps[neighbour], c.min_range_m, Fate::kIn)) {
+      if (std::abs(point.azimuth_deg) < kBorderDeg) points.push_back(point);
+    }
   }
   const auto missing = Missing(points, reference);
   EXPECT_TRUE(missing.empty()) << missing.size() << " of " << c.num_points << ", the first at "

@@ -159,6 +159,35 @@ TEST_F(PacketDriverTest, NamesACaptureThatIsNone) {
   EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }), HasSubstr("missing.pcap"));
 }
 
+TEST_F(PacketDriverTest, SaysThatACaptureIsOfAnotherSensorOrToAnotherPort) {
+  test::PcapFile alien;
+  const std::vector<std::uint8_t> bytes(1262, 0);
+  for (std::size_t i = 0; i < 10; ++i) {
+    alien.Add(UtimeOf(i), test::UdpFrame{2368, bytes}.Ethernet());
+  }
+  Capture(alien);
+  EXPECT_THAT(test::ErrorOf([&] { Run(); }),
+              HasSubstr("capture.pcap: no Velodyne VLP-16 packet among 10 of 1262 bytes: another "
+                        "sensor? 1262 bytes is what hesai_40p sends"));
+  test::PcapFile elsewhere;
+  elsewhere.Add(UtimeOf(0), test::UdpFrame{2369, test::Vlp16Turns(1)[0].bytes}.Ethernet());
+  Capture(elsewhere);
+  EXPECT_THAT(test::ErrorOf([&] { Run(); }),
+              HasSubstr("no packet to the lidar's port, but 1 to port 2369"));
+}
+
+TEST_F(PacketDriverTest, NamesTheCalibrationThatIsWrong) {
+  Capture(test::Vlp16Turns(75));
+  rig_.lidar_sensor.calibration = folder_.Write("unit.yaml", "lasers: [1, 2]");
+  EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }),
+              HasSubstr("unit.yaml: lasers must be a list of 16, has 2 (expected: "
+                        "velodyne_pointcloud's YAML)"));
+  rig_.lidar_sensor.calibration.clear();
+  rig_.lidar_sensor.packets.protocol = FindLidarProtocol("ouster");
+  EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }),
+              HasSubstr("ouster needs a calibration: the sensor's metadata, JSON"));
+}
+
 TEST_F(PacketDriverTest, PublishesThePacketsThemselvesIfAskedTo) {
   rig_.lidar_sensor.are_packets_published = true;
   const auto packets = test::Vlp16Turns(76);

@@ -193,7 +193,8 @@ std::string WrongLidarText(const LidarProtocol& protocol,
                            const std::map<std::size_t, std::int64_t>& sizes) {
   const auto most = std::max_element(
       sizes.begin(), sizes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most == sizes.end()) return "no " + protocol.title + " packet: nothing was received";
+  const std::string model = protocol.title.substr(protocol.title.find(' ') + 1);
+  if (most == sizes.end()) return "no " + model + " packet: nothing was received";
   std::string senders;
   for (const LidarProtocol& other : LidarProtocols()) {
     const bool is_sender =
@@ -201,8 +202,8 @@ std::string WrongLidarText(const LidarProtocol& protocol,
     if (is_sender && &other != &protocol) senders += (senders.empty() ? "" : ", ") + other.name;
   }
   const std::string bytes = std::to_string(most->first) + " bytes";
-  std::string text = "no " + protocol.title + " packet among " + std::to_string(most->second) +
-                     " of " + bytes + ": another sensor?";
+  std::string text = "no " + model + " packet among " + std::to_string(most->second) + " of " +
+                     bytes + ": another sensor?";
   if (!senders.empty()) text += " " + bytes + " is what " + senders + " sends";
   return text;
 }

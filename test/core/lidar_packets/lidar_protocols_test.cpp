@@ -28,12 +28,11 @@ TEST(LidarProtocols, HaveNamesOfTheirOwnWhichTheReadmeLists) {
 }
 
 TEST(WrongLidarText, NamesWhoMayHaveSentIt) {
-  EXPECT_EQ(
-      WrongLidarText(*FindLidarProtocol("vlp16"), {{1262, 1439}, {48, 3}}),
-      "no Velodyne VLP-16 packet among 1439 of 1262 bytes: another sensor? 1262 bytes is what "
-      "hesai_40p sends");
+  EXPECT_EQ(WrongLidarText(*FindLidarProtocol("vlp16"), {{1262, 1439}, {48, 3}}),
+            "no VLP-16 packet among 1439 of 1262 bytes: another sensor? 1262 bytes is what "
+            "hesai_40p sends");
   EXPECT_EQ(WrongLidarText(*FindLidarProtocol("vlp16"), {{7, 2}}),
-            "no Velodyne VLP-16 packet among 2 of 7 bytes: another sensor?");
+            "no VLP-16 packet among 2 of 7 bytes: another sensor?");
 }
 
 }  // namespace

@@ -233,7 +233,7 @@ TEST(LidarPacketStream, SaysWhoMayHaveSentWhatItDoesNotKnow) {
   const std::vector<std::uint8_t> bytes(1448, 0);
   for (int i = 0; i < 12; ++i) stream.Add({bytes.data(), bytes.size()}, kHostUtime + i);
   EXPECT_EQ(stream.WrongLidar(),
-            "no Velodyne VLP-16 packet among 12 of 1448 bytes: another sensor? 1448 bytes is what "
+            "no VLP-16 packet among 12 of 1448 bytes: another sensor? 1448 bytes is what "
             "baraja_spectrum_scan sends");
   stream.Add(Turns(1)[0].Bytes(), kHostUtime);
   EXPECT_EQ(stream.WrongLidar(), "");

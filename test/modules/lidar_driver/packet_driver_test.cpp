@@ -167,7 +167,7 @@ TEST_F(PacketDriverTest, SaysThatACaptureIsOfAnotherSensorOrToAnotherPort) {
   }
   Capture(alien);
   EXPECT_THAT(test::ErrorOf([&] { Run(); }),
-              HasSubstr("capture.pcap: no Velodyne VLP-16 packet among 10 of 1262 bytes: another "
+              HasSubstr("capture.pcap: no VLP-16 packet among 10 of 1262 bytes: another "
                         "sensor? 1262 bytes is what hesai_40p sends"));
   test::PcapFile elsewhere;
   elsewhere.Add(UtimeOf(0), test::UdpFrame{2369, test::Vlp16Turns(1)[0].bytes}.Ethernet());

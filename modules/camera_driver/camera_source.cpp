@@ -19,7 +19,7 @@ namespace {
 // The files' bytes are passed on as they are: PNG stays lossless, JPEG is not compressed twice.
 class FolderCameraSource : public CameraSource {
  public:
-  explicit FolderCameraSource(const DriverOptions& options)
+  explicit FolderCameraSource(const FrameOptions& options)
       : folder_(options, {".png", ".jpg", ".jpeg"}) {}
 
   std::optional<TimedImage> Next() override {
@@ -71,17 +71,14 @@ class SimulatedCameraSource : public CameraSource {
 
 std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig, Bus* bus) {
   switch (rig.camera_driver.source) {
-    case DriverSource::kFolder:
+    case CameraDriverOptions::Source::kFolder:
       RequireFolder(rig.camera_driver, rig.path.string() + ": camera_driver");
       return std::make_unique<FolderCameraSource>(rig.camera_driver);
-    case DriverSource::kSimulator:
+    case CameraDriverOptions::Source::kSimulator:
       if (rig.simulation.follows_guidance) return std::make_unique<GuidedCameraSource>(rig, bus);
       return std::make_unique<SimulatedCameraSource>(rig);
-    case DriverSource::kVideo:
+    case CameraDriverOptions::Source::kVideo:
       return MakeVideoSource(rig.camera_driver);
-    case DriverSource::kVlp16:  // the rig's reader lets only a lidar have these
-    case DriverSource::kSpectrumScan:
-      break;
   }
   throw std::logic_error("MakeCameraSource: unknown source");
 }

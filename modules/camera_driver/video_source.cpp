@@ -23,7 +23,7 @@ std::int64_t NowUs() {
 const int kMjpeg = cv::VideoWriter::fourcc('M', 'J', 'P', 'G');
 
 // Opens what the options name. MJPEG stays compressed where the backend can leave it so.
-cv::VideoCapture Open(const DriverOptions& options) {
+cv::VideoCapture Open(const CameraDriverOptions& options) {
   constexpr int kTimeoutMs = 3000;  // a silent network must not stop the heartbeat for longer
   cv::VideoCapture video;
   if (!options.device.empty()) {
@@ -61,7 +61,7 @@ std::vector<std::uint8_t> Encoded(const cv::Mat& frame, int jpeg_quality) {
 
 class VideoSource : public CameraSource {
  public:
-  explicit VideoSource(const DriverOptions& options)
+  explicit VideoSource(const CameraDriverOptions& options)
       : options_(options),
         name_(options.device + options.pipeline + options.url),
         is_file_(!options.url.empty() && options.url.find("://") == std::string::npos) {}
@@ -127,7 +127,7 @@ class VideoSource : public CameraSource {
     return clock_.UtimeOf(arrival_utime, stream_ms > 0 ? std::optional(stream_us) : std::nullopt);
   }
 
-  DriverOptions options_;
+  CameraDriverOptions options_;
   std::string name_;
   bool is_file_;
   cv::VideoCapture video_;
@@ -141,7 +141,7 @@ class VideoSource : public CameraSource {
 
 }  // namespace
 
-std::unique_ptr<CameraSource> MakeVideoSource(const DriverOptions& options) {
+std::unique_ptr<CameraSource> MakeVideoSource(const CameraDriverOptions& options) {
   return std::make_unique<VideoSource>(options);
 }
 

@@ -13,6 +13,6 @@ namespace voqcal {
 /// MJPEG is passed on as it comes; other frames are compressed with the rig's jpeg_quality. Frames
 /// of a file have the file's times, from kSyntheticEpochUtime; those of a device the kernel's time
 /// of the buffer; those of a stream see CaptureClock.
-std::unique_ptr<CameraSource> MakeVideoSource(const DriverOptions& options);
+std::unique_ptr<CameraSource> MakeVideoSource(const CameraDriverOptions& options);
 
 }  // namespace voqcal

@@ -16,7 +16,7 @@ namespace {
 
 class FolderLidarSource : public LidarSource {
  public:
-  explicit FolderLidarSource(const DriverOptions& options) : folder_(options, {".pcd", ".ply"}) {}
+  explicit FolderLidarSource(const FrameOptions& options) : folder_(options, {".pcd", ".ply"}) {}
 
   std::optional<TimedCloud> Next() override {
     const auto file = folder_.Next();
@@ -58,17 +58,14 @@ class SimulatedLidarSource : public LidarSource {
 
 std::unique_ptr<LidarSource> MakeLidarSource(const Rig& rig, PacketListener on_packet, Bus* bus) {
   switch (rig.lidar_driver.source) {
-    case DriverSource::kFolder:
+    case LidarDriverOptions::Source::kFolder:
       RequireFolder(rig.lidar_driver, rig.path.string() + ": lidar_driver");
       return std::make_unique<FolderLidarSource>(rig.lidar_driver);
-    case DriverSource::kSimulator:
+    case LidarDriverOptions::Source::kSimulator:
       if (rig.simulation.follows_guidance) return std::make_unique<GuidedLidarSource>(rig, bus);
       return std::make_unique<SimulatedLidarSource>(rig);
-    case DriverSource::kVlp16:
-    case DriverSource::kSpectrumScan:
+    case LidarDriverOptions::Source::kSensor:
       return std::make_unique<PacketLidarSource>(rig.lidar_sensor, std::move(on_packet));
-    case DriverSource::kVideo:  // the rig's reader lets only a camera have it
-      break;
   }
   throw std::logic_error("MakeLidarSource: unknown source");
 }

@@ -1,7 +1,9 @@
 #include "lidar_driver/packet_lidar_source.hpp"
 
+#include <stdexcept>
 #include <utility>
 
+#include "lidar_driver/calibrated_stream.hpp"
 #include "lidar_driver/pcap_packets.hpp"
 #include "lidar_driver/udp_packets.hpp"
 #include "result/lidar_bias_yaml.hpp"
@@ -22,8 +24,8 @@ SweepPace PaceOf(const LidarSensorOptions& options) {
 }  // namespace
 
 PacketLidarSource::PacketLidarSource(const LidarSensorOptions& options, PacketListener on_packet)
-    : stream_(options.packets),
-      has_ring_(options.packets.model == LidarModel::kVlp16),
+    : stream_(CalibratedStream(options.packets, options.calibration)),
+      has_ring_(options.packets.protocol->has_rings),
       bias_(options.bias_from.empty() ? LidarBias() : ReadLidarBias(options.bias_from)),
       on_packet_(std::move(on_packet)),
       pace_(PaceOf(options)),
@@ -49,7 +51,24 @@ bool PacketLidarSource::Read() {
   auto sweeps = packet ? stream_.Add({packet->bytes.data(), packet->bytes.size()}, packet->utime)
                        : stream_.Finish();
   for (TimedSweep& sweep : sweeps) ready_.push_back(std::move(sweep));
+  if (has_ended_) RefuseWrongLidar();
   return true;
+}
+
+std::string PacketLidarSource::State() const {
+  const std::string wrong = stream_.WrongLidar();
+  return wrong.empty() ? packets_->State() : wrong;
+}
+
+void PacketLidarSource::RefuseWrongLidar() const {
+  const std::string wrong = stream_.WrongLidar();
+  if (!wrong.empty()) throw std::runtime_error(packets_->Name() + ": " + wrong);
+  const auto other = packets_->BusiestOtherPort();
+  if (!stream_.Counts().empty() || !other) return;
+  throw std::runtime_error(packets_->Name() + ": no packet to the lidar's port, but " +
+                           std::to_string(other->num_packets) + " to port " +
+                           std::to_string(other->port) +
+                           ": set lidar_driver.sensor.port to the lidar's");
 }
 
 std::map<std::string, std::int64_t> PacketLidarSource::Counts() const {

@@ -14,6 +14,12 @@ struct HostPacket {
   std::vector<std::uint8_t> bytes;
 };
 
+/// A port that nobody listens to here.
+struct OtherPort {
+  int port = 0;
+  std::int64_t num_packets = 0;
+};
+
 /// Where a lidar's datagrams come from, one after the other.
 class PacketSource {
  public:
@@ -24,6 +30,12 @@ class PacketSource {
 
   /// True once there will never be a datagram again.
   virtual bool HasEnded() const = 0;
+
+  /// The capture's file or the network's address, as errors name it.
+  virtual std::string Name() const = 0;
+
+  /// The one of the ports that were not listened to which got most packets, if any.
+  virtual std::optional<OtherPort> BusiestOtherPort() const { return std::nullopt; }
 
   /// "running", or what it waits for.
   virtual std::string State() const { return "running"; }

@@ -7,6 +7,7 @@
 #include <pcap/pcap.h>
 #include <spdlog/spdlog.h>
 
+#include "lidar_driver/ip_fragments.hpp"
 #include "lidar_driver/udp_frame.hpp"
 
 namespace voqcal {
@@ -56,9 +57,18 @@ class PcapPackets : public PacketSource {
     has_ended_ = status != 1;
     if (status == PCAP_ERROR) NoteDamage();
     if (has_ended_) return std::nullopt;
-    const auto payload = FindUdpPayload(link_, {data, header->caplen});
-    if (!payload || payload->port != port_) {
-      ++counts_[payload ? "packets to other ports" : "frames without UDP"];
+    const PacketBytes frame{data, header->caplen};
+    auto payload = FindUdpPayload(link_, frame);
+    const auto ip = payload ? std::nullopt : FindIp(link_, frame);
+    const auto joined = ip ? fragments_.Add(*ip) : std::nullopt;
+    if (joined) payload = FindUdpPayload(FrameLink::kIp, {joined->data(), joined->size()});
+    if (!payload) {
+      ++counts_["frames without UDP"];
+      return std::nullopt;
+    }
+    if (port_ != 0 && payload->port != port_) {
+      ++counts_["packets to other ports"];
+      ++other_ports_[payload->port];
       return std::nullopt;
     }
     return HostPacket{std::int64_t{header->ts.tv_sec} * 1000000 + header->ts.tv_usec,
@@ -66,7 +76,16 @@ class PcapPackets : public PacketSource {
   }
 
   bool HasEnded() const override { return has_ended_; }
+  std::string Name() const override { return path_.string(); }
   const std::map<std::string, std::int64_t>& Counts() const override { return counts_; }
+
+  std::optional<OtherPort> BusiestOtherPort() const override {
+    std::optional<OtherPort> busiest;
+    for (const auto& [port, num_packets] : other_ports_) {
+      if (!busiest || num_packets > busiest->num_packets) busiest = OtherPort{port, num_packets};
+    }
+    return busiest;
+  }
 
  private:
   void NoteDamage() {
@@ -78,8 +97,10 @@ class PcapPackets : public PacketSource {
   int port_;
   std::unique_ptr<pcap_t, PcapCloser> pcap_;
   FrameLink link_ = FrameLink::kEthernet;
+  IpFragments fragments_;
   bool has_ended_ = false;
   std::map<std::string, std::int64_t> counts_;
+  std::map<int, std::int64_t> other_ports_;  // how many packets went there
 };
 
 }  // namespace

@@ -39,6 +39,8 @@ std::optional<PacketBytes> AfterCooked(PacketBytes frame, std::size_t type_at, s
   return After(frame, size);
 }
 
+}  // namespace
+
 std::optional<PacketBytes> FindIp(FrameLink link, PacketBytes frame) {
   constexpr std::size_t kLoopbackHeader = 4;
   switch (link) {
@@ -56,8 +58,6 @@ std::optional<PacketBytes> FindIp(FrameLink link, PacketBytes frame) {
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 std::optional<UdpPayload> FindUdpPayload(FrameLink link, PacketBytes frame) {
   constexpr std::size_t kMinIpHeader = 20;

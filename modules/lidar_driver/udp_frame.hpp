@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/lidar/packet.hpp"
+#include "core/lidar_packets/packet.hpp"
 
 namespace voqcal {
 
@@ -20,6 +20,9 @@ struct UdpPayload {
   int port = 0;
   PacketBytes bytes;
 };
+
+/// A captured frame's IPv4 packet, if it has one.
+std::optional<PacketBytes> FindIp(FrameLink link, PacketBytes frame);
 
 /// The UDP datagram of a captured frame; nothing if it holds none, is a fragment, or is no IPv4. A
 /// payload that the capture cut short is what there is of it.

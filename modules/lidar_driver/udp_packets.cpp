@@ -65,6 +65,7 @@ class UdpPackets : public PacketSource {
   }
 
   bool HasEnded() const override { return false; }
+  std::string Name() const override { return name_; }
   const std::map<std::string, std::int64_t>& Counts() const override { return counts_; }
 
   std::string State() const override {

@@ -8,8 +8,6 @@
 namespace voqcal {
 namespace {
 
-using Sources = std::map<std::string, DriverSource>;
-
 std::filesystem::path Beside(const std::filesystem::path& rig_path, const std::string& path) {
   if (path.empty()) return {};
   return (rig_path.parent_path() / path).lexically_normal();
@@ -25,24 +23,48 @@ void ReadPath(const std::string& key,
 }
 
 /// What both drivers have in common.
-/// @param rule  names the sources, as an error says it.
-void ReadFrameSource(const std::filesystem::path& rig_path,
-                     const Sources& sources,
-                     const std::string& rule,
-                     YamlSection* section,
-                     DriverOptions* options) {
-  std::string source = "folder";
-  section->Read("source", &source);
-  const auto known = sources.find(source);
-  if (known == sources.end()) {
-    section->AddError("source", rule);
-  } else {
-    options->source = known->second;
-  }
+void ReadFrameOptions(const std::filesystem::path& rig_path,
+                      YamlSection* section,
+                      FrameOptions* options) {
   ReadPath("folder", rig_path, section, &options->folder);
   section->Read("file_ending", &options->file_ending);
   section->Read("rate_hz", &options->rate_hz);
   section->Read("is_repeating", &options->is_repeating);
+}
+
+/// A lidar's source is one of its own, or a lidar by its protocol's name.
+void ReadLidarSource(YamlSection* section,
+                     LidarDriverOptions* options,
+                     LidarSensorOptions* sensor) {
+  using Source = LidarDriverOptions::Source;
+  const std::map<std::string, Source> sources = {{"folder", Source::kFolder},
+                                                 {"simulator", Source::kSimulator}};
+  std::string text = "folder";
+  section->Read("source", &text);
+  const auto known = sources.find(text);
+  const LidarProtocol* const protocol = FindLidarProtocol(text);
+  if (known != sources.end()) {
+    options->source = known->second;
+  } else if (protocol) {
+    options->source = Source::kSensor;
+    sensor->packets.protocol = protocol;
+  } else {
+    section->AddError("source", "must be folder, simulator or a lidar: " + LidarProtocolNames());
+  }
+}
+
+void ReadCameraSource(YamlSection* section, CameraDriverOptions* options) {
+  using Source = CameraDriverOptions::Source;
+  const std::map<std::string, Source> sources = {
+      {"folder", Source::kFolder}, {"simulator", Source::kSimulator}, {"video", Source::kVideo}};
+  std::string text = "folder";
+  section->Read("source", &text);
+  const auto known = sources.find(text);
+  if (known != sources.end()) {
+    options->source = known->second;
+  } else {
+    section->AddError("source", "must be folder, simulator or video");
+  }
 }
 
 void ReadReturns(YamlSection* section, ReturnChoice* returns) {
@@ -66,15 +88,16 @@ void ReadSensor(YamlSection* lidar_driver,
   section.Read("is_unpaced", &options->is_unpaced);
   section.Read("address", &options->address);
   section.Read("port", &options->port);
+  ReadPath("calibration", rig_path, &section, &options->calibration);
   ReadReturns(&section, &options->packets.returns);
   section.ReadDegrees("split_azimuth_deg", &options->packets.split_azimuth_rad);
   std::vector<double> elevations_deg;
   section.Read("elevations_deg", &elevations_deg);
   for (const double elevation_deg : elevations_deg) {
-    options->packets.vlp16.elevations_rad.push_back(elevation_deg * M_PI / 180.0);
+    options->packets.unit.elevations_rad.push_back(elevation_deg * M_PI / 180.0);
   }
-  section.Read("distance_offset_m", &options->packets.vlp16.distance_offset_m);
-  section.Read("ring_offsets_m", &options->packets.vlp16.ring_offsets_m);
+  section.Read("distance_offset_m", &options->packets.unit.distance_offset_m);
+  section.Read("ring_offsets_m", &options->packets.unit.ring_offsets_m);
   ReadPath("bias_from", rig_path, &section, &options->bias_from);
   section.Read("are_packets_published", &options->are_packets_published);
   section.AddProblems(options->Problems());
@@ -85,17 +108,11 @@ void ReadSensor(YamlSection* lidar_driver,
 
 void ReadLidarDriver(YamlSection* top,
                      const std::filesystem::path& rig_path,
-                     DriverOptions* options,
+                     LidarDriverOptions* options,
                      LidarSensorOptions* sensor) {
-  const Sources sources = {{"folder", DriverSource::kFolder},
-                           {"simulator", DriverSource::kSimulator},
-                           {"vlp16", DriverSource::kVlp16},
-                           {"spectrum_scan", DriverSource::kSpectrumScan}};
   YamlSection section = top->Section("lidar_driver");
-  ReadFrameSource(
-      rig_path, sources, "must be folder, simulator, vlp16 or spectrum_scan", &section, options);
-  sensor->packets.model = options->source == DriverSource::kSpectrumScan ? LidarModel::kSpectrumScan
-                                                                         : LidarModel::kVlp16;
+  ReadLidarSource(&section, options, sensor);
+  ReadFrameOptions(rig_path, &section, options);
   ReadSensor(&section, rig_path, sensor);
   section.AddProblems(options->Problems());
   section.RefuseUnknownKeys();
@@ -103,12 +120,10 @@ void ReadLidarDriver(YamlSection* top,
 
 void ReadCameraDriver(YamlSection* top,
                       const std::filesystem::path& rig_path,
-                      DriverOptions* options) {
-  const Sources sources = {{"folder", DriverSource::kFolder},
-                           {"simulator", DriverSource::kSimulator},
-                           {"video", DriverSource::kVideo}};
+                      CameraDriverOptions* options) {
   YamlSection section = top->Section("camera_driver");
-  ReadFrameSource(rig_path, sources, "must be folder, simulator or video", &section, options);
+  ReadCameraSource(&section, options);
+  ReadFrameOptions(rig_path, &section, options);
   section.Read("jpeg_quality", &options->jpeg_quality);
   section.Read("device", &options->device);
   section.Read("pipeline", &options->pipeline);

@@ -10,12 +10,12 @@ namespace voqcal {
 /// The section lidar_driver. Relative paths are relative to the folder of `rig_path`.
 void ReadLidarDriver(YamlSection* top,
                      const std::filesystem::path& rig_path,
-                     DriverOptions* options,
+                     LidarDriverOptions* options,
                      LidarSensorOptions* sensor);
 
 /// The section camera_driver.
 void ReadCameraDriver(YamlSection* top,
                       const std::filesystem::path& rig_path,
-                      DriverOptions* options);
+                      CameraDriverOptions* options);
 
 }  // namespace voqcal

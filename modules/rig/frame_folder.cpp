@@ -47,13 +47,13 @@ std::optional<std::int64_t> FrameNumber(const std::filesystem::path& path) {
   return std::stoll(digits);
 }
 
-void RequireFolder(const DriverOptions& options, const std::string& where) {
+void RequireFolder(const FrameOptions& options, const std::string& where) {
   if (options.folder.empty()) {
     throw std::runtime_error(where + ".folder: must be given, since source is folder");
   }
 }
 
-FrameFolder::FrameFolder(const DriverOptions& options, const std::vector<std::string>& extensions)
+FrameFolder::FrameFolder(const FrameOptions& options, const std::vector<std::string>& extensions)
     : is_repeating_(options.is_repeating) {
   std::vector<std::filesystem::path> paths = FilesInNaturalOrder(options.folder, extensions);
   const auto is_other = [&options](const std::filesystem::path& path) {

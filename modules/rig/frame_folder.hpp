@@ -22,7 +22,7 @@ std::optional<std::int64_t> FrameNumber(const std::filesystem::path& path);
 
 /// @param where  file and section that the message names: "my_rig.yaml: lidar_driver".
 /// @throws std::runtime_error if the options name no folder.
-void RequireFolder(const DriverOptions& options, const std::string& where);
+void RequireFolder(const FrameOptions& options, const std::string& where);
 
 /// The files of a driver's folder as frames. Frame number n stands for kSyntheticEpochUtime + n /
 /// rate_hz, so that pose10.png and pose10_full.pcd are of the same instant although other poses may
@@ -30,7 +30,7 @@ void RequireFolder(const DriverOptions& options, const std::string& where);
 class FrameFolder {
  public:
   /// @throws std::runtime_error naming the folder if it is missing or has no such file.
-  FrameFolder(const DriverOptions& options, const std::vector<std::string>& extensions);
+  FrameFolder(const FrameOptions& options, const std::vector<std::string>& extensions);
 
   /// The next file in natural order; nothing after the last, unless the options repeat.
   std::optional<FrameFile> Next();

@@ -9,25 +9,24 @@
 
 namespace voqcal {
 
-std::vector<std::string> DriverOptions::Problems() const {
+std::vector<std::string> LidarDriverOptions::Problems() const {
+  ProblemList problems;
+  problems.RequirePositive("rate_hz", rate_hz);
+  return problems.lines();
+}
+
+std::vector<std::string> CameraDriverOptions::Problems() const {
   ProblemList problems;
   problems.RequirePositive("rate_hz", rate_hz);
   problems.Require(
       jpeg_quality >= 1 && jpeg_quality <= 100, "jpeg_quality must be 1 to 100", jpeg_quality);
   const int num_named = !device.empty() + !pipeline.empty() + !url.empty();
-  if (source == DriverSource::kVideo && num_named != 1) {
+  if (source == Source::kVideo && num_named != 1) {
     problems.Add(
         {"source video needs one of device, pipeline and url, has " + std::to_string(num_named)});
   }
   problems.RequirePositive("retry_s", retry_s);
   return problems.lines();
-}
-
-int LidarSensorOptions::Port() const {
-  constexpr int kVlp16Port = 2368;
-  constexpr int kSpectrumScanPort = 5044;
-  if (port != 0) return port;
-  return packets.model == LidarModel::kVlp16 ? kVlp16Port : kSpectrumScanPort;
 }
 
 std::vector<std::string> LidarSensorOptions::Problems() const {
@@ -37,6 +36,10 @@ std::vector<std::string> LidarSensorOptions::Problems() const {
   problems.Require(inet_pton(AF_INET, address.c_str(), &parsed) == 1,
                    "address must be an IPv4 address of this host",
                    '"' + address + '"');
+  problems.Require(!packets.protocol->needs_calibration || !calibration.empty(),
+                   "calibration must name " + packets.protocol->calibration + " of this " +
+                       packets.protocol->title,
+                   "not given");
   problems.Require(port >= 0 && port <= 65535, "port must be 0 to 65535", port);
   return problems.lines();
 }

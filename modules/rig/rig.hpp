@@ -15,8 +15,8 @@
 #include "core/estimation/average.hpp"
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/guidance/next_pose.hpp"
-#include "core/lidar/packet_stream.hpp"
 #include "core/lidar_detection/lidar_board.hpp"
+#include "core/lidar_packets/packet_stream.hpp"
 #include "core/sampling/sample_picker.hpp"
 #include "core/selection/consistency.hpp"
 #include "core/selection/select_sets.hpp"
@@ -54,22 +54,19 @@ struct Channels {
 /// microseconds since the Unix epoch. Never the wall clock: the same frames get the same times.
 inline constexpr std::int64_t kSyntheticEpochUtime = 1577836800000000;
 
-/// kVideo is a camera's, kVlp16 and kSpectrumScan are a lidar's.
-enum class DriverSource { kFolder, kSimulator, kVideo, kVlp16, kSpectrumScan };
-
-/// Where a driver's frames come from.
-struct DriverOptions {
-  DriverSource source = DriverSource::kFolder;
+/// The frames of a driver, whichever it is.
+struct FrameOptions {
   std::filesystem::path folder;  ///< For kFolder: files in natural order (pose2 before pose10).
   std::string file_ending;       ///< For kFolder: only names that end so ("_full.pcd"); empty: all.
-  double rate_hz = 10.0;         ///< Frames a second.
+  double rate_hz = 10.0;         ///< Frames a second, of a folder or the simulator.
   bool is_repeating = false;     ///< For kFolder: starts again after the last file.
-  int jpeg_quality = 95;         ///< Camera only, of images that are no files yet: 1 to 100.
-  // For kVideo, camera only: one of these three.
-  std::string device;    ///< V4L2: /dev/video0.
-  std::string pipeline;  ///< GStreamer: "... ! appsink".
-  std::string url;       ///< A stream (rtsp://...) or a video file.
-  double retry_s = 1.0;  ///< For kVideo: how long after a loss the camera is sought again.
+};
+
+/// Where the lidar driver's sweeps come from.
+struct LidarDriverOptions : FrameOptions {
+  enum class Source { kFolder, kSimulator, kSensor };
+
+  Source source = Source::kFolder;
 
   /// One line for each broken constraint, with its value; empty if the options are usable. Whether
   /// the folder exists is for the driver to say: a rig file also serves where there is no such
@@ -77,20 +74,38 @@ struct DriverOptions {
   std::vector<std::string> Problems() const;
 };
 
+/// Where the camera driver's images come from.
+struct CameraDriverOptions : FrameOptions {
+  enum class Source { kFolder, kSimulator, kVideo };
+
+  Source source = Source::kFolder;
+  int jpeg_quality = 95;  ///< Of images that are no files yet: 1 to 100.
+  // For kVideo: one of these three.
+  std::string device;    ///< V4L2: /dev/video0.
+  std::string pipeline;  ///< GStreamer: "... ! appsink".
+  std::string url;       ///< A stream (rtsp://...) or a video file.
+  double retry_s = 1.0;  ///< For kVideo: how long after a loss the camera is sought again.
+
+  /// As those of LidarDriverOptions.
+  std::vector<std::string> Problems() const;
+};
+
 /// A lidar whose packets the driver reads itself, from the network or a capture.
 struct LidarSensorOptions {
   LidarPacketOptions packets;
+  /// The vendor's file on this very unit, in the format that its protocol names; empty: none.
+  std::filesystem::path calibration;
   std::filesystem::path pcap;  ///< A capture instead of the network; empty: the network.
   bool is_unpaced = false;     ///< A capture as fast as it can be read, not as it was recorded.
   /// Of this host, on which packets are awaited: an IPv4 address of its network card, or 0.0.0.0
   /// for all cards (needed for broadcasts). By default nothing from beyond this host arrives.
   std::string address = "127.0.0.1";
-  int port = 0;  ///< 0: the sensor's usual one, see Port().
+  int port = 0;  ///< 0: the sensor's usual one.
   /// A result file whose lidar_bias is taken off all ranges; empty: none.
   std::filesystem::path bias_from;
   bool are_packets_published = false;  ///< On the channel lidar_packets, as they came.
 
-  int Port() const;  ///< 2368 (VLP-16) or 5044 (Spectrum-Scan) unless `port` says otherwise.
+  int Port() const { return port != 0 ? port : packets.protocol->port; }
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;
@@ -105,9 +120,9 @@ struct Rig {
   Channels channels;
   BoardSpec board;
   CameraModel camera;
-  DriverOptions lidar_driver;
-  LidarSensorOptions lidar_sensor;  ///< Under lidar_driver; for sources kVlp16 and kSpectrumScan.
-  DriverOptions camera_driver;
+  LidarDriverOptions lidar_driver;
+  LidarSensorOptions lidar_sensor;  ///< Under lidar_driver; for source kSensor.
+  CameraDriverOptions camera_driver;
   SimulationOptions simulation;  ///< Used by drivers whose source is the simulator.
   LidarBoardOptions lidar_board_detector;
   CameraBoardOptions camera_board_detector;

@@ -1,13 +1,13 @@
 // Packets of both versions: two bytes of milliseconds since the one before, two of length, then it.
 #include <algorithm>
 
-#include "core/lidar/packet_stream.hpp"
+#include "core/lidar_packets/packet_stream.hpp"
 #include "fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   voqcal::fuzz::Input input(data, size);
   voqcal::LidarPacketOptions options;
-  options.model = voqcal::LidarModel::kSpectrumScan;
+  options.protocol = voqcal::FindLidarProtocol("spectrum_scan");
   voqcal::LidarPacketStream stream(options);
   std::int64_t host_utime = 1700000000000000;
   while (input.size() > 0) {

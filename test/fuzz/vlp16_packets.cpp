@@ -2,7 +2,7 @@
 // the last as long as the input is.
 #include <algorithm>
 
-#include "core/lidar/packet_stream.hpp"
+#include "core/lidar_packets/packet_stream.hpp"
 #include "fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const int choice = input.Byte();
   options.returns = static_cast<voqcal::ReturnChoice>(choice % 3);
   options.split_azimuth_rad = choice / 256.0 * 2 * M_PI;
-  if (choice % 2 == 1) options.vlp16.ring_offsets_m.assign(16, 0.01);
+  if (choice % 2 == 1) options.unit.ring_offsets_m.assign(16, 0.01);
   voqcal::LidarPacketStream stream(options);
   std::int64_t host_utime = 1700000000000000;
   while (input.size() > 0) {

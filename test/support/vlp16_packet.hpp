@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/lidar/packet.hpp"
+#include "core/lidar_packets/packet.hpp"
 
 namespace voqcal::test {
 

@@ -11,18 +11,26 @@
 namespace voqcal {
 namespace {
 
-const char* ToString(DriverSource source) {
-  switch (source) {
-    case DriverSource::kFolder:
+std::string LidarSourceOf(const Rig& rig) {
+  switch (rig.lidar_driver.source) {
+    case LidarDriverOptions::Source::kFolder:
       return "folder";
-    case DriverSource::kSimulator:
+    case LidarDriverOptions::Source::kSimulator:
       return "simulator";
-    case DriverSource::kVideo:
+    case LidarDriverOptions::Source::kSensor:
+      return rig.lidar_sensor.packets.protocol->name;
+  }
+  return "unknown";
+}
+
+std::string CameraSourceOf(const Rig& rig) {
+  switch (rig.camera_driver.source) {
+    case CameraDriverOptions::Source::kFolder:
+      return "folder";
+    case CameraDriverOptions::Source::kSimulator:
+      return "simulator";
+    case CameraDriverOptions::Source::kVideo:
       return "video";
-    case DriverSource::kVlp16:
-      return "vlp16";
-    case DriverSource::kSpectrumScan:
-      return "spectrum_scan";
   }
   return "unknown";
 }
@@ -46,8 +54,8 @@ void PrintRig(const Rig& rig) {
   std::printf(
       "reads      %s, %s\n", rig.channels.lidar_points.c_str(), rig.channels.camera_image.c_str());
   std::printf("drivers    lidar: %s, camera: %s\n",
-              ToString(rig.lidar_driver.source),
-              ToString(rig.camera_driver.source));
+              LidarSourceOf(rig).c_str(),
+              CameraSourceOf(rig).c_str());
 }
 
 // What calibrate reads of a recording, which also holds what the live modules made of it.

@@ -55,10 +55,10 @@ class EventWriter {
   std::int64_t next_number_ = 0;
 };
 
-DriverOptions FolderOptions(const std::filesystem::path& folder,
+FrameOptions FolderOptions(const std::filesystem::path& folder,
                             const std::string& file_ending,
                             double rate_hz) {
-  DriverOptions options;
+  FrameOptions options;
   options.folder = folder;
   options.file_ending = file_ending;
   options.rate_hz = rate_hz;

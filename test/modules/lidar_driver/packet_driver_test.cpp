@@ -34,7 +34,7 @@ std::int64_t UtimeOf(std::size_t i) {
 class PacketDriverTest : public ::testing::Test {
  protected:
   PacketDriverTest() {
-    rig_.lidar_driver.source = DriverSource::kVlp16;
+    rig_.lidar_driver.source = LidarDriverOptions::Source::kSensor;
     rig_.lidar_sensor.packets.split_azimuth_rad = 0.0;
     rig_.lidar_sensor.is_unpaced = true;
   }
@@ -159,6 +159,35 @@ TEST_F(PacketDriverTest, NamesACaptureThatIsNone) {
   EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }), HasSubstr("missing.pcap"));
 }
 
+TEST_F(PacketDriverTest, SaysThatACaptureIsOfAnotherSensorOrToAnotherPort) {
+  test::PcapFile alien;
+  const std::vector<std::uint8_t> bytes(1262, 0);
+  for (std::size_t i = 0; i < 10; ++i) {
+    alien.Add(UtimeOf(i), test::UdpFrame{2368, bytes}.Ethernet());
+  }
+  Capture(alien);
+  EXPECT_THAT(test::ErrorOf([&] { Run(); }),
+              HasSubstr("capture.pcap: no VLP-16 packet among 10 of 1262 bytes: another "
+                        "sensor? 1262 bytes is what hesai_40p sends"));
+  test::PcapFile elsewhere;
+  elsewhere.Add(UtimeOf(0), test::UdpFrame{2369, test::Vlp16Turns(1)[0].bytes}.Ethernet());
+  Capture(elsewhere);
+  EXPECT_THAT(test::ErrorOf([&] { Run(); }),
+              HasSubstr("no packet to the lidar's port, but 1 to port 2369"));
+}
+
+TEST_F(PacketDriverTest, NamesTheCalibrationThatIsWrong) {
+  Capture(test::Vlp16Turns(75));
+  rig_.lidar_sensor.calibration = folder_.Write("unit.yaml", "lasers: [1, 2]");
+  EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }),
+              HasSubstr("unit.yaml: lasers must be a list of 16, has 2 (expected: "
+                        "velodyne_pointcloud's YAML)"));
+  rig_.lidar_sensor.calibration.clear();
+  rig_.lidar_sensor.packets.protocol = FindLidarProtocol("ouster");
+  EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }),
+              HasSubstr("ouster needs a calibration: the sensor's metadata, JSON"));
+}
+
 TEST_F(PacketDriverTest, PublishesThePacketsThemselvesIfAskedTo) {
   rig_.lidar_sensor.are_packets_published = true;
   const auto packets = test::Vlp16Turns(76);
@@ -170,9 +199,9 @@ TEST_F(PacketDriverTest, PublishesThePacketsThemselvesIfAskedTo) {
 }
 
 TEST_F(PacketDriverTest, TakesOffsetsOffTheRanges) {
-  rig_.lidar_sensor.packets.vlp16.distance_offset_m = 0.25;
-  rig_.lidar_sensor.packets.vlp16.ring_offsets_m.assign(16, 0.0);
-  rig_.lidar_sensor.packets.vlp16.ring_offsets_m[2] = -0.5;
+  rig_.lidar_sensor.packets.unit.distance_offset_m = 0.25;
+  rig_.lidar_sensor.packets.unit.ring_offsets_m.assign(16, 0.0);
+  rig_.lidar_sensor.packets.unit.ring_offsets_m[2] = -0.5;
   Capture(test::Vlp16Turns(75));
   Run();
   for (const LidarPoint& point : Cloud(0).points) {
@@ -195,8 +224,7 @@ TEST_F(PacketDriverTest, TakesTheBiasOfAnEarlierResultOffTheRanges) {
 }
 
 TEST_F(PacketDriverTest, ReadsASpectrumScanOnItsOwnPort) {
-  rig_.lidar_driver.source = DriverSource::kSpectrumScan;
-  rig_.lidar_sensor.packets.model = LidarModel::kSpectrumScan;
+  rig_.lidar_sensor.packets.protocol = FindLidarProtocol("spectrum_scan");
   test::PcapFile file;
   // Three packets of 20 degrees each make a scan; the fourth begins anew at 60 degrees.
   for (int i = 0; i < 6; ++i) {

@@ -67,7 +67,7 @@ int FreePort() {
 class PacketNetworkTest : public ::testing::Test {
  protected:
   PacketNetworkTest() {
-    rig_.lidar_driver.source = DriverSource::kVlp16;
+    rig_.lidar_driver.source = LidarDriverOptions::Source::kSensor;
     rig_.lidar_sensor.packets.split_azimuth_rad = 0.0;
   }
 

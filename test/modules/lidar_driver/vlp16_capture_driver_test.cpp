@@ -57,7 +57,7 @@ Keys PointsOf(const pointcloud2_t& message) {
 // The sweep that holds most of the reference's points, and how many.
 std::pair<std::size_t, std::size_t> FoundByTheDriver(ReturnChoice returns) {
   Rig rig = test::TestRig();
-  rig.lidar_driver.source = DriverSource::kVlp16;
+  rig.lidar_driver.source = LidarDriverOptions::Source::kSensor;
   rig.lidar_sensor.pcap = *test::RealDataFolder() / "vlp16-capture/vlp16_dual_return.pcap";
   rig.lidar_sensor.is_unpaced = true;
   rig.lidar_sensor.packets.split_azimuth_rad = 0.0;

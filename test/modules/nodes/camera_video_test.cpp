@@ -47,7 +47,7 @@ class CameraVideoTest : public ::testing::Test {
  protected:
   CameraVideoTest() {
     rig_.camera = test::SmallCamera(LensModel::kEquidistant);
-    rig_.camera_driver.source = DriverSource::kVideo;
+    rig_.camera_driver.source = CameraDriverOptions::Source::kVideo;
     rig_.camera_driver.url = (folder_.path() / "video.avi").string();
     rig_.camera_driver.rate_hz = 1000;
     rig_.camera_driver.retry_s = 0.001;
@@ -133,8 +133,8 @@ TEST_F(CameraVideoTest, ARepeatedFileGoesOnInTime) {
 }
 
 TEST(DriverOptionsVideo, NamesOneCamera) {
-  DriverOptions options;
-  options.source = DriverSource::kVideo;
+  CameraDriverOptions options;
+  options.source = CameraDriverOptions::Source::kVideo;
   EXPECT_THAT(options.Problems().at(0), HasSubstr("one of device, pipeline and url, has 0"));
   options.device = "/dev/video0";
   EXPECT_THAT(options.Problems(), ::testing::IsEmpty());

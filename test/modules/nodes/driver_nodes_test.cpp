@@ -53,7 +53,8 @@ class DriverNodesTest : public ::testing::Test {
     cv::imwrite((folder_.path() / name).string(), image);
   }
   void Simulate() {
-    rig_.lidar_driver.source = rig_.camera_driver.source = DriverSource::kSimulator;
+    rig_.lidar_driver.source = LidarDriverOptions::Source::kSimulator;
+    rig_.camera_driver.source = CameraDriverOptions::Source::kSimulator;
     rig_.lidar_driver.rate_hz = rig_.camera_driver.rate_hz = 10;
     rig_.simulation.T_camera_lidar = test::TestExtrinsic();
     rig_.simulation.num_poses = 1;

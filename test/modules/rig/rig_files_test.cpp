@@ -70,7 +70,7 @@ TEST(SimulatedRig, LooksForwardNearTheLidar) {
   EXPECT_GT(T_camera_lidar.linear()(2, 0), std::cos(5 * M_PI / 180));
   EXPECT_LT(T_camera_lidar.linear()(0, 1), -std::cos(5 * M_PI / 180));
   EXPECT_NEAR(T_camera_lidar.translation().norm(), 0.12, 0.02);
-  EXPECT_EQ(rig.lidar_driver.source, DriverSource::kSimulator);
+  EXPECT_EQ(rig.lidar_driver.source, LidarDriverOptions::Source::kSimulator);
   EXPECT_EQ(rig.camera_driver.rate_hz, 5);
 }
 

@@ -104,15 +104,15 @@ TEST(LoadRig, ReadsALidarOfTheNetworkOrACapture) {
       Minimal() + "lidar_driver:\n  source: vlp16\n  sensor: {pcap: drive.pcap, returns: last, "
                   "split_azimuth_deg: 90, bias_from: old/extrinsic.yaml,\n    elevations_deg: "
                   "[-15, -13, -11, -9, -7, -5, -3, -1, 1, 3, 5, 7, 9, 11, 13, 15]}\n"));
-  EXPECT_EQ(rig.lidar_driver.source, DriverSource::kVlp16);
+  EXPECT_EQ(rig.lidar_driver.source, LidarDriverOptions::Source::kSensor);
   EXPECT_EQ(rig.lidar_sensor.pcap, folder.path() / "drive.pcap");
   EXPECT_EQ(rig.lidar_sensor.bias_from, folder.path() / "old/extrinsic.yaml");
   EXPECT_EQ(rig.lidar_sensor.packets.returns, ReturnChoice::kLast);
   EXPECT_DOUBLE_EQ(rig.lidar_sensor.packets.split_azimuth_rad, M_PI / 2);
-  EXPECT_DOUBLE_EQ(rig.lidar_sensor.packets.vlp16.elevations_rad.at(15), 15 * M_PI / 180);
+  EXPECT_DOUBLE_EQ(rig.lidar_sensor.packets.unit.elevations_rad.at(15), 15 * M_PI / 180);
   EXPECT_EQ(rig.lidar_sensor.Port(), 2368);
   const Rig baraja = Load(Minimal() + "lidar_driver: {source: spectrum_scan}\n");
-  EXPECT_EQ(baraja.lidar_sensor.packets.model, LidarModel::kSpectrumScan);
+  EXPECT_EQ(baraja.lidar_sensor.packets.protocol->name, "baraja_spectrum_scan");
   EXPECT_EQ(baraja.lidar_sensor.Port(), 5044);
   EXPECT_EQ(baraja.lidar_sensor.address, "127.0.0.1");  // nothing from beyond this host by default
 }
@@ -154,8 +154,8 @@ TEST(LoadRig, NamesFileLineKeyRuleAndValue) {
   EXPECT_EQ(LoadError(text + "lcm: loopback\n"),
             "rig.yaml:5: lcm must be a section, is \"loopback\"");
   EXPECT_EQ(LoadError(text + "lidar_driver: {source: tape}\n"),
-            "rig.yaml:5: lidar_driver.source must be folder, simulator, vlp16 or spectrum_scan, is "
-            "\"tape\"");
+            "rig.yaml:5: lidar_driver.source must be folder, simulator or a lidar: " +
+                LidarProtocolNames() + ", is \"tape\"");
 }
 
 TEST(LoadRig, RefusesWhatIsNotFinite) {

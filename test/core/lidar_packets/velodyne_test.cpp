@@ -1,8 +1,7 @@
-#include "core/lidar/vlp16.hpp"
+#include "core/lidar_packets/velodyne.hpp"
 
 #include <cmath>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "support/vlp16_packet.hpp"
@@ -11,18 +10,19 @@ namespace voqcal {
 namespace {
 
 using test::Vlp16PacketWriter;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 constexpr double kDeg = M_PI / 180.0;
+
+Expected<LidarPacket, PacketFault> DecodeVlp16(PacketBytes bytes, const LidarUnit& unit) {
+  return MakeVelodyneVlp16(unit)(bytes);
+}
 
 TEST(DecodeVlp16, PutsAnEchoWhereTheManualDoes) {
   Vlp16PacketWriter packet(9000, 40, 123456);
   packet.SetEcho(3, 1, 6, 1000, 77);  // 2 m at -9 degrees
   const auto decoded = DecodeVlp16(packet.Bytes(), {});
   ASSERT_TRUE(decoded);
-  EXPECT_EQ(decoded->sensor_us, 123456U);
+  EXPECT_EQ(decoded->sensor_us, 123456);
   ASSERT_EQ(decoded->returns.size(), 1U);
   const PacketReturn& echo = decoded->returns[0];
   // Three blocks of 110.592 us, one firing of 55.296 us and six lasers of 2.304 us.
@@ -32,7 +32,7 @@ TEST(DecodeVlp16, PutsAnEchoWhereTheManualDoes) {
   EXPECT_EQ(echo.point.ring, 3);
   EXPECT_EQ(echo.point.intensity, 77.0F);
   EXPECT_EQ(echo.distance_m, 2.0);
-  EXPECT_EQ(echo.kind, ReturnKind::kOnly);
+  EXPECT_EQ(echo.of_how_many, 1);
   const Eigen::Vector3d expected_m(2.0 * std::cos(-9 * kDeg) * std::cos(azimuth_rad),
                                    -2.0 * std::cos(-9 * kDeg) * std::sin(azimuth_rad),
                                    2.0 * std::sin(-9 * kDeg));
@@ -60,34 +60,31 @@ TEST(DecodeVlp16, TellsTheTwoReturnsApart) {
   const auto decoded = DecodeVlp16(packet.Bytes(), {});
   ASSERT_TRUE(decoded);
   ASSERT_EQ(decoded->returns.size(), 4U);
-  EXPECT_EQ(decoded->returns[0].kind, ReturnKind::kLast);
-  EXPECT_DOUBLE_EQ(decoded->returns[0].distance_m, 1.8);
-  EXPECT_EQ(decoded->returns[1].kind, ReturnKind::kOther);
-  EXPECT_DOUBLE_EQ(decoded->returns[1].distance_m, 1.2);
-  EXPECT_EQ(decoded->returns[2].kind, ReturnKind::kOnly);
-  EXPECT_EQ(decoded->returns[3].kind, ReturnKind::kOnly);
+  const auto number = [&](int i) {
+    return std::make_pair(decoded->returns[i].number, decoded->returns[i].of_how_many);
+  };
+  EXPECT_EQ(number(0), std::make_pair(1, 2));
+  EXPECT_DOUBLE_EQ(decoded->returns[0].distance_m, 1.2);
+  EXPECT_EQ(number(1), std::make_pair(2, 2));
+  EXPECT_DOUBLE_EQ(decoded->returns[1].distance_m, 1.8);
+  EXPECT_EQ(number(2), std::make_pair(1, 1));
+  EXPECT_EQ(number(3), std::make_pair(1, 1));
   // Blocks come in pairs: the third pair.
   EXPECT_NEAR(decoded->returns[0].after_packet_us, 2 * 110.592 + 2 * 2.304, 1e-9);
   EXPECT_NEAR(
       decoded->returns[0].azimuth_rad, (10.0 + 0.4 * (2 + 2 * 2.304 / 110.592)) * kDeg, 1e-12);
 }
 
-TEST(DecodeVlp16, TakesWhatIsKnownOfTheUnit) {
+TEST(DecodeVlp16, TakesTheUnitsOwnElevations) {
   Vlp16PacketWriter packet(0, 40, 0);
   packet.SetEcho(0, 0, 1, 1000, 1);  // ring 8
-  Vlp16Options options;
-  options.elevations_rad.assign(16, 0.0);
-  options.elevations_rad[8] = 1.2 * kDeg;
-  options.distance_offset_m = 0.02;
-  options.ring_offsets_m.assign(16, 0.0);
-  options.ring_offsets_m[8] = -0.005;
-  EXPECT_THAT(options.Problems(), IsEmpty());
-  const auto decoded = DecodeVlp16(packet.Bytes(), options);
+  LidarUnit unit;
+  unit.elevations_rad.assign(16, 0.0);
+  unit.elevations_rad[8] = 1.2 * kDeg;
+  const auto decoded = DecodeVlp16(packet.Bytes(), unit);
   ASSERT_TRUE(decoded);
   const Eigen::Vector3d position_m = decoded->returns.at(0).point.position_m.cast<double>();
-  EXPECT_NEAR(position_m.norm(), 2.0 - 0.015, 1e-6);
   EXPECT_NEAR(std::asin(position_m.z() / position_m.norm()), 1.2 * kDeg, 1e-6);
-  EXPECT_EQ(decoded->returns[0].distance_m, 2.0);  // as measured
 }
 
 TEST(DecodeVlp16, RefusesWhatIsNotADataPacket) {
@@ -107,18 +104,6 @@ TEST(DecodeVlp16, RefusesWhatIsNotADataPacket) {
   EXPECT_EQ(fault_after([](Bytes bytes) { (*bytes)[1204] = 0x40; }),
             "packets in an unknown return mode");
   EXPECT_EQ(fault_after([](Bytes) {}), "none");
-}
-
-TEST(Vlp16OptionsProblems, NamesTheRuleAndTheValue) {
-  Vlp16Options options;
-  options.elevations_rad.assign(3, 0.0);
-  options.ring_offsets_m.assign(17, 0.0);
-  EXPECT_THAT(options.Problems(),
-              ElementsAre("elevations_deg must have 16 entries or none, has 3",
-                          "ring_offsets_m must have 16 entries or none, has 17"));
-  options = {};
-  options.elevations_rad.assign(16, 2.0);
-  EXPECT_THAT(options.Problems()[0], HasSubstr("within -90 and 90, one is 114.59"));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/lidar/packet_stream.hpp"
+#include "core/lidar_packets/packet_stream.hpp"
 #include "support/real_data.hpp"
 
 namespace voqcal {
@@ -60,16 +60,16 @@ std::vector<TimedSweep> SweepsOfCapture() {
   return sweeps;
 }
 
-// Ring, distance in 2 mm, which return.
-using Key = std::tuple<int, int, ReturnKind>;
+// Ring, distance in 2 mm, which return of how many.
+using Key = std::tuple<int, int, int, int>;
 using Keys = std::multiset<Key>;
 
 // Kinds of return in the reference: 6 both the same; of two, 4 and 9 are the farther (the last), 5
 // and 10 the nearer.
-std::optional<ReturnKind> KindOf(int return_type) {
-  if (return_type == 6) return ReturnKind::kOnly;
-  if (return_type == 4 || return_type == 9) return ReturnKind::kLast;
-  if (return_type == 5 || return_type == 10) return ReturnKind::kOther;
+std::optional<std::pair<int, int>> NumberOf(int return_type) {
+  if (return_type == 6) return std::make_pair(1, 1);
+  if (return_type == 4 || return_type == 9) return std::make_pair(2, 2);
+  if (return_type == 5 || return_type == 10) return std::make_pair(1, 2);
   return std::nullopt;
 }
 
@@ -82,11 +82,11 @@ Keys ReferencePoints() {
   Keys points;
   for (std::size_t at = bytes.find(marker) + marker.size(); at + kStep <= bytes.size();
        at += kStep) {
-    const auto kind = KindOf(static_cast<std::uint8_t>(bytes[at + 13]));
-    EXPECT_TRUE(kind);
-    if (!kind) break;
+    const auto number = NumberOf(static_cast<std::uint8_t>(bytes[at + 13]));
+    EXPECT_TRUE(number);
+    if (!number) break;
     const int distance = static_cast<int>(std::lround(Field<float>(bytes, at + 24) / 0.002));
-    points.emplace(Field<std::uint16_t>(bytes, at + 14), distance, *kind);
+    points.emplace(Field<std::uint16_t>(bytes, at + 14), distance, number->first, number->second);
   }
   return points;
 }
@@ -94,8 +94,10 @@ Keys ReferencePoints() {
 Keys PointsOf(const TimedSweep& sweep) {
   Keys points;
   for (const PacketReturn& echo : sweep.returns) {
-    points.emplace(
-        echo.point.ring, static_cast<int>(std::lround(echo.distance_m / 0.002)), echo.kind);
+    points.emplace(echo.point.ring,
+                   static_cast<int>(std::lround(echo.distance_m / 0.002)),
+                   echo.number,
+                   echo.of_how_many);
   }
   return points;
 }

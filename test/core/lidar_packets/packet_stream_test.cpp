@@ -1,17 +1,22 @@
-#include "core/lidar/packet_stream.hpp"
+#include "core/lidar_packets/packet_stream.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/lidar_packets/velodyne.hpp"
+#include "support/spectrum_packet.hpp"
 #include "support/vlp16_packet.hpp"
 
 namespace voqcal {
 namespace {
 
 using test::Vlp16PacketWriter;
+using testing::ElementsAre;
+using testing::HasSubstr;
 
 constexpr std::int64_t kHostUtime = 1700000000000000;
 constexpr int kStep = 40;  // centidegrees a block: 75 packets a turn
@@ -22,7 +27,7 @@ std::vector<Vlp16PacketWriter> Turns(int num_packets, std::uint32_t first_us = 1
   std::vector<Vlp16PacketWriter> packets;
   for (int i = 0; i < num_packets; ++i) {
     const auto time_us = static_cast<std::uint32_t>((first_us + std::llround(i * kPacketUs)) %
-                                                    std::int64_t{kVlp16ClockUs});
+                                                    std::int64_t{kVelodyneClockUs});
     packets.emplace_back(i * 12 * kStep % 36000, kStep, time_us);
     packets.back().SetAllEchoes(1500, 50);
   }
@@ -123,7 +128,7 @@ TEST(LidarPacketStream, ATurnThatIsLostDoesNotJoinTwoSweeps) {
 TEST(LidarPacketStream, FollowsTheHourAndTheHost) {
   // The clock wraps within the first turn; utime goes on.
   LidarPacketStream stream(SplitAt(0));
-  const auto sweeps = SweepsOf(Turns(150, kVlp16ClockUs - 50000), &stream);
+  const auto sweeps = SweepsOf(Turns(150, kVelodyneClockUs - 50000), &stream);
   ASSERT_EQ(sweeps.size(), 2U);
   EXPECT_EQ(sweeps[0].utime, kHostUtime);
   EXPECT_NEAR(static_cast<double>(sweeps[1].utime - sweeps[0].utime), 75 * kPacketUs, 2.0);
@@ -132,7 +137,7 @@ TEST(LidarPacketStream, FollowsTheHourAndTheHost) {
 TEST(LidarPacketStream, TrustsASynchronisedSensor) {
   // 3 ms before the host's time within the hour: sent, and on its way for 3 ms.
   const auto in_hour_us =
-      static_cast<std::uint32_t>((kHostUtime - 3000) % std::int64_t{kVlp16ClockUs});
+      static_cast<std::uint32_t>((kHostUtime - 3000) % std::int64_t{kVelodyneClockUs});
   LidarPacketStream stream(SplitAt(0));
   EXPECT_EQ(SweepsOf(Turns(10, in_hour_us), &stream).at(0).utime, kHostUtime - 3000);
 }
@@ -157,7 +162,7 @@ TEST(LidarPacketStream, KeepsTheReturnsThatAreAskedFor) {
     }
     return found_m;
   };
-  EXPECT_EQ(distances_m(ReturnChoice::kBoth), (std::vector<double>{10, 3, 5, 2, 4}));
+  EXPECT_EQ(distances_m(ReturnChoice::kBoth), (std::vector<double>{3, 10, 2, 5, 4}));
   EXPECT_EQ(distances_m(ReturnChoice::kStrongest), (std::vector<double>{3, 5, 4}));
   EXPECT_EQ(distances_m(ReturnChoice::kLast), (std::vector<double>{10, 5, 4}));
 }
@@ -183,6 +188,96 @@ TEST(LidarPacketStream, GoesOnAfterASensorIsSwitchedOffAndOn) {
   EXPECT_EQ(stream.Counts().at("clock restarts"), 1);
   EXPECT_EQ(stream.Counts().count("packets late"), 0U);
   EXPECT_EQ(stream.Counts().count("packets lost"), 0U);
+}
+
+TEST(LidarPacketStream, LeavesOutSecondCopies) {
+  const auto packets = Turns(150);
+  std::vector<Vlp16PacketWriter> twice;
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    twice.push_back(packets[i]);
+    if (i >= 3) twice.push_back(packets[i - 3]);  // a mirrored port may be late
+  }
+  LidarPacketStream once(SplitAt(0));
+  LidarPacketStream stream(SplitAt(0));
+  const auto expected = SweepsOf(packets, &once);
+  std::vector<TimedSweep> sweeps;
+  for (std::size_t i = 0; i < twice.size(); ++i) {
+    const auto host_utime = kHostUtime + std::llround(static_cast<double>(i) / 2 * kPacketUs);
+    for (auto& sweep : stream.Add(twice[i].Bytes(), host_utime)) sweeps.push_back(sweep);
+  }
+  for (auto& sweep : stream.Finish()) sweeps.push_back(sweep);
+  EXPECT_EQ(stream.Counts().at("packets twice"), 147);
+  EXPECT_EQ(stream.Counts().at("packets"), 150);
+  ASSERT_EQ(sweeps.size(), expected.size());
+  for (std::size_t i = 0; i < sweeps.size(); ++i) {
+    EXPECT_EQ(sweeps[i].returns.size(), expected[i].returns.size());
+  }
+}
+
+TEST(LidarPacketStream, TakesTheHostsTimeWhereTheSensorsStandsStill) {
+  auto packets = Turns(150);
+  for (Vlp16PacketWriter& packet : packets) {
+    std::fill(packet.bytes.begin() + 1200, packet.bytes.begin() + 1204, std::uint8_t{5});
+  }
+  LidarPacketStream stream(SplitAt(0));
+  const auto sweeps = SweepsOf(packets, &stream);
+  ASSERT_EQ(sweeps.size(), 2U);
+  EXPECT_EQ(sweeps[0].returns.size(), 75U * 12 * 32);
+  EXPECT_NEAR(static_cast<double>(sweeps[1].utime - sweeps[0].utime), 75 * kPacketUs, 2.0);
+  EXPECT_EQ(stream.Counts().at("packets whose clock stood still"), 149);
+  EXPECT_EQ(stream.Counts().count("clock restarts"), 0U);
+}
+
+TEST(LidarPacketStream, SaysWhoMayHaveSentWhatItDoesNotKnow) {
+  LidarPacketStream stream(SplitAt(0));
+  const std::vector<std::uint8_t> bytes(1448, 0);
+  for (int i = 0; i < 12; ++i) stream.Add({bytes.data(), bytes.size()}, kHostUtime + i);
+  EXPECT_EQ(stream.WrongLidar(),
+            "no VLP-16 packet among 12 of 1448 bytes: another sensor? 1448 bytes is what "
+            "baraja_spectrum_scan sends");
+  stream.Add(Turns(1)[0].Bytes(), kHostUtime);
+  EXPECT_EQ(stream.WrongLidar(), "");
+}
+
+TEST(LidarPacketStream, IsNotLedAstrayByAPacketWithoutPoints) {
+  LidarPacketOptions options;
+  options.protocol = FindLidarProtocol("spectrum_scan");
+  LidarPacketStream stream(options);
+  const test::SpectrumPoint point{0, 40.0, -5.0, 1000, 50};
+  for (int i = 0; i < 20; ++i) {
+    const bool is_empty = i == 10;
+    const auto bytes = test::SpectrumVersionZero(
+        5000000 + 1000 * i, is_empty ? std::vector<test::SpectrumPoint>() : std::vector{point});
+    stream.Add({bytes.data(), bytes.size()}, kHostUtime + 1000 * i);
+  }
+  EXPECT_EQ(stream.Counts().at("packets"), 19);
+  EXPECT_EQ(stream.Counts().at("packets without points"), 1);
+  EXPECT_EQ(stream.Counts().count("clock restarts"), 0U);
+}
+
+TEST(LidarPacketStream, TakesOffWhatReadsLong) {
+  Vlp16PacketWriter packet(0, kStep, 1000);
+  packet.SetEcho(0, 0, 1, 1000, 1);  // ring 8
+  LidarPacketOptions options;
+  options.unit.distance_offset_m = 0.02;
+  options.unit.ring_offsets_m.assign(16, 0.0);
+  options.unit.ring_offsets_m[8] = -0.005;
+  LidarPacketStream stream(options);
+  const PacketReturn echo = SweepsOf({packet}, &stream).at(0).returns.at(0);
+  EXPECT_NEAR(echo.point.position_m.norm(), 2.0 - 0.015, 1e-6);
+  EXPECT_EQ(echo.distance_m, 2.0);  // as measured
+}
+
+TEST(LidarPacketOptionsProblems, NamesTheRuleAndTheValue) {
+  LidarPacketOptions options;
+  options.unit.elevations_rad.assign(3, 0.0);
+  options.unit.ring_offsets_m.assign(17, 0.0);
+  EXPECT_THAT(options.Problems(),
+              ElementsAre("elevations_deg must have 16 entries or none for velodyne_vlp16, is 3",
+                          "ring_offsets_m must have 16 entries or none for velodyne_vlp16, is 17"));
+  options.unit = {};
+  options.unit.elevations_rad.assign(16, 2.0);
+  EXPECT_THAT(options.Problems()[0], HasSubstr("within -90 and 90, is 114.59"));
 }
 
 TEST(LidarPacketStream, RefusesBadOptions) {

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "core/expected.hpp"
-#include "core/lidar/packet.hpp"
+#include "core/lidar_packets/packet.hpp"
 
 namespace voqcal {
 
@@ -17,6 +16,8 @@ namespace voqcal {
 ///
 /// x = d cos(phi) cos(theta - 90 deg), y = d cos(phi) sin(theta - 90 deg), z = d sin(phi). The
 /// sensor has no rings: a point's ring is 0.
-Expected<LidarPacket, PacketFault> DecodeSpectrumScan(PacketBytes bytes, double distance_offset_m);
+Expected<LidarPacket, PacketFault> DecodeSpectrumScan(PacketBytes bytes);
+
+PacketDecoder MakeSpectrumScan(const LidarUnit& unit);
 
 }  // namespace voqcal

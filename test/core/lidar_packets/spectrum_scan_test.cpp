@@ -1,4 +1,4 @@
-#include "core/lidar/spectrum_scan.hpp"
+#include "core/lidar_packets/spectrum_scan.hpp"
 
 #include <cmath>
 #include <vector>
@@ -17,7 +17,7 @@ using test::SpectrumVersionOne;
 using test::SpectrumVersionZero;
 
 Expected<LidarPacket, PacketFault> Decode(const std::vector<std::uint8_t>& bytes) {
-  return DecodeSpectrumScan({bytes.data(), bytes.size()}, 0.0);
+  return DecodeSpectrumScan({bytes.data(), bytes.size()});
 }
 
 void ExpectAt(const PacketReturn& echo, double theta_deg, double phi_deg, double distance_m) {

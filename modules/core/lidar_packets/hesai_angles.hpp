@@ -1,0 +1,17 @@
+#pragma once
+
+#include "core/lidar_packets/beam_table.hpp"
+
+namespace voqcal {
+
+// The angles that Hesai publishes for each model, by channel.
+BeamTable Hesai40pBeams();
+BeamTable Hesai64Beams();
+BeamTable HesaiQt64Beams();
+BeamTable HesaiQt128Beams();
+BeamTable HesaiXt16Beams();
+BeamTable HesaiXt32Beams();
+BeamTable HesaiXt32mBeams();
+BeamTable HesaiOt128Beams();
+
+}  // namespace voqcal

@@ -101,6 +101,8 @@ function* scannedMessages(file, decompress, connections, remarks) {
     const record = recordAt((from, length) => file.at(from, length), at);
     if (record === undefined) {
       remarks.push(`is cut off or damaged at byte ${at} of ${file.numBytes}: what is before it is read`);
+      const cut = recordAt((from, length) => file.at(from, Math.min(length, file.numBytes - from)), at);
+      if (cut?.op === OP.CHUNK) yield* inOrder(chunkMessages(cut, at, decompress, connections, []));
       return;
     }
     if (record.op === OP.CHUNK) yield* inOrder(chunkMessages(record, at, decompress, connections, remarks));

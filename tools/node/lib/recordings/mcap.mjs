@@ -14,19 +14,25 @@ const { crc32 } = createRequire(import.meta.url)("@foxglove/crc");
 export const MCAP_MAGIC = Buffer.from("\x89MCAP0\r\n", "latin1");
 const OP = { SCHEMA: 3, CHANNEL: 4, MESSAGE: 5, CHUNK: 6, DATA_END: 15 };
 
-/** Opens by the index; undefined where there is none, or it tells of no chunks. */
+/** Opens by the index; undefined where there is none, or it lacks chunks, channels or their types. */
 export async function openIndexedMcap(path) {
   const file = await open(path);
   try {
     const decompressHandlers = await loadDecompressHandlers();
     const readable = new FileHandleReadable(file);
     const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });
-    if (reader.chunkIndexes.length > 0) return indexedMcap(reader, file);
+    if (hasWholeIndex(reader)) return indexedMcap(reader, file);
   } catch {
     // The scan says what is wrong.
   }
   await file.close();
   return undefined;
+}
+
+function hasWholeIndex({ chunkIndexes, channelsById, schemasById }) {
+  const channels = [...channelsById.values()];
+  const isKnown = ({ schemaId }) => schemaId === 0 || schemasById.has(schemaId);
+  return chunkIndexes.length > 0 && channels.length > 0 && channels.every(isKnown);
 }
 
 function indexedMcap(reader, file) {
@@ -127,7 +133,12 @@ function* scannedMessages(file, decompress, channels, remarks, isCounting) {
     if (opcode === OP.DATA_END) return;
     const length = head && Number(head.readBigUInt64LE(1));
     if (head === undefined || opcode === 0 || at + 9 + length > file.numBytes) {
-      remarks.push(`is cut off or damaged at byte ${at} of ${file.numBytes}: what is before it is read`);
+      remarks.push(
+        at === file.numBytes
+          ? "was not closed by its recorder: all of it is read"
+          : `is cut off or damaged at byte ${at} of ${file.numBytes}: what is before it is read`,
+      );
+      if (opcode === OP.CHUNK) yield* inOrder(chunkMessages(file.at(at + 9, file.numBytes - at - 9), at, decompress, channels, [], true));
       return;
     }
     const begin = at + 9;
@@ -149,23 +160,25 @@ function* take(opcode, bytes, channels) {
   if (channels.topicOf(message.channelId) !== undefined) yield message;
 }
 
-function* chunkMessages(bytes, offset, decompress, channels, remarks) {
+/** Of a chunk that is cut off: what is before the cut, where it is not compressed. */
+function* chunkMessages(bytes, offset, decompress, channels, remarks, isCut = false) {
   let records;
   try {
-    records = chunkRecords(bytes, decompress);
+    records = chunkRecords(bytes, decompress, isCut);
   } catch (error) {
     remarks.push(`the chunk at byte ${offset} is damaged and left out (${error.message})`);
     return;
   }
   for (let at = 0; at + 9 <= records.length; ) {
     const length = Number(records.readBigUInt64LE(at + 1));
+    if (at + 9 + length > records.length) return;
     yield* take(records[at], records.subarray(at + 9, at + 9 + length), channels);
     at += 9 + length;
   }
 }
 
 /** Chunk: start, end and size u64, CRC u32, name of the compression, records. */
-function chunkRecords(bytes, decompress) {
+function chunkRecords(bytes, decompress, isCut) {
   const numBytes = bytes.readBigUInt64LE(16);
   const crc = bytes.readUInt32LE(24);
   const compression = text(bytes, 28);
@@ -174,7 +187,7 @@ function chunkRecords(bytes, decompress) {
     throw new Error(`compressed by '${compression.value}'`);
   }
   const records = compression.value === "" ? packed : decompress[compression.value](packed, numBytes);
-  if (crc !== 0 && crc32(records) !== crc) throw new Error("its checksum is another");
+  if (!isCut && crc !== 0 && crc32(records) !== crc) throw new Error("its checksum is another");
   return Buffer.from(records.buffer, records.byteOffset, records.byteLength);
 }
 

@@ -45,14 +45,18 @@ async function* inOrderOfTime(parts, names) {
     source.head = await next(source);
     if (source.head) open.push(source);
   };
-  while (waiting.length > 0 || open.length > 0) {
-    const isNext = () => open.length === 0 || open.every(({ head }) => waiting[0].startNs <= head.logTimeNs);
-    while (waiting.length > 0 && isNext()) await begin();
-    if (open.length === 0) continue;
-    const first = open.reduce((least, source) => (source.head.logTimeNs < least.head.logTimeNs ? source : least));
-    yield first.head;
-    open.splice(open.indexOf(first), 1);
-    await advance(first);
+  try {
+    while (waiting.length > 0 || open.length > 0) {
+      const isNext = () => open.length === 0 || open.every(({ head }) => waiting[0].startNs <= head.logTimeNs);
+      while (waiting.length > 0 && isNext()) await begin();
+      if (open.length === 0) continue;
+      const first = open.reduce((least, source) => (source.head.logTimeNs < least.head.logTimeNs ? source : least));
+      yield first.head;
+      open.splice(open.indexOf(first), 1);
+      await advance(first);
+    }
+  } finally {
+    for (const { messages } of open) await messages.return(); // whoever reads may have enough
   }
 }
 

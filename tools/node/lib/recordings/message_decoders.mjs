@@ -31,7 +31,7 @@ function knownDefinition(type) {
   if (livox) return parse(livox, { ros2: true });
   const found = new Map();
   const add = (name) => {
-    const definition = ros2humble[name] ?? ros2humble[name.replace("/", "/msg/")];
+    const definition = ros2humble[plainType(name)] ?? ros2humble[plainType(name).replace("/", "/msg/")];
     if (!definition) throw new UserError(`type ${name}: the recording does not define it, nor is it known here`);
     if (found.has(name)) return;
     found.set(name, definition);

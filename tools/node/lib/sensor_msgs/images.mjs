@@ -41,11 +41,22 @@ export function bitsUsed(images) {
   let greatest = 0;
   for (const image of images) {
     const kind = ENCODINGS[image.encoding?.toLowerCase()];
-    if (kind?.bytes !== 2) continue;
-    for (const value of numbersOf(image, kind, "all rows").values) if (value > greatest) greatest = value;
+    if (kind?.bytes === 2) greatest = Math.max(greatest, greatestOf(image, kind));
   }
   if (greatest === 0) return undefined;
   return [8, 10, 12, 14, 16].find((bits) => greatest < 2 ** bits);
+}
+
+/** Without what pads the rows; 0 of a broken image. */
+function greatestOf(image, kind) {
+  let greatest = 0;
+  if (!hasRows(image, kind)) return greatest;
+  const { values, stride } = numbersOf(image, kind);
+  for (let y = 0; y < image.height; ++y) {
+    const end = y * stride + image.width * kind.numbers;
+    for (let i = y * stride; i < end; ++i) if (values[i] > greatest) greatest = values[i];
+  }
+  return greatest;
 }
 
 /** @param bits  of numbers of 16: the upper 8 of these are kept. */
@@ -69,7 +80,8 @@ function rawPixels(message, bits) {
     throw new UserError(`the image is encoded as '${encoding}'; wanted: ${known}, or CompressedImage`);
   }
   const common = { width, height, pixelformat: kind.format };
-  const step = requireRows(message, kind);
+  requireRows(message, kind);
+  const { step } = message;
   const isAsItIs = kind.bytes === 1 && kind.numbers === kind.keep && !kind.isMosaic;
   if (isAsItIs) {
     return { ...common, row_stride: step, data: buffer(message.data).subarray(0, step * height) };
@@ -78,10 +90,15 @@ function rawPixels(message, bits) {
   return { ...common, row_stride: width * kind.keep, data: kind.isMosaic ? brightness(bytes, width, height) : bytes };
 }
 
-/** Bytes from one row to the next. */
-function requireRows({ width, height, step, encoding, data }, kind) {
-  const rowBytes = width * kind.numbers * kind.bytes;
-  if (width > 0 && height > 0 && step >= rowBytes && data.length >= (height - 1) * step + rowBytes) return step;
+function hasRows({ width, height, step, data }, { numbers, bytes }) {
+  const rowBytes = width * numbers * bytes;
+  const isOfNumbers = step % bytes === 0;
+  return width > 0 && height > 0 && isOfNumbers && step >= rowBytes && data.length >= (height - 1) * step + rowBytes;
+}
+
+function requireRows(image, kind) {
+  if (hasRows(image, kind)) return;
+  const { width, height, step, encoding, data } = image;
   throw new UserError(
     data.length === 0
       ? "the image has no bytes"
@@ -92,7 +109,7 @@ function requireRows({ width, height, step, encoding, data }, kind) {
 /** The numbers that are kept, 8 bits each, without padding. */
 function kept(image, kind, bits) {
   const { width, height } = image;
-  const { values, stride } = numbersOf(image, kind, requireRows(image, kind));
+  const { values, stride } = numbersOf(image, kind);
   const out = Buffer.allocUnsafe(width * height * kind.keep);
   const shift = kind.bytes === 2 ? bits - 8 : 0;
   let to = 0;
@@ -111,7 +128,6 @@ function kept(image, kind, bits) {
 /** All numbers, and how many lie between the beginnings of two rows. */
 function numbersOf({ step, data, is_bigendian }, kind) {
   if (kind.bytes === 1) return { values: data, stride: step };
-  if (step % 2 !== 0) throw new UserError(`the image has 16-bit numbers in rows of ${step} bytes`);
   const copy = Buffer.from(data.subarray(0, data.length & ~1)); // at an even address
   if (is_bigendian) copy.swap16();
   return { values: new Uint16Array(copy.buffer, copy.byteOffset, copy.length / 2), stride: step / 2 };

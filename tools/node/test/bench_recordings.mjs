@@ -5,12 +5,12 @@ import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, rmSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { openRecording } from "./lib/recordings/open.mjs";
-import { writeBag, writeDb3, writeMcap } from "./test/recording_writers.mjs";
+import { openRecording } from "../lib/recordings/open.mjs";
+import { writeBag, writeDb3, writeMcap } from "./recording_writers.mjs";
 
 const [folder, megabytes = "300"] = process.argv.slice(2);
 const path = (name) => join(folder, name);
-const importer = fileURLToPath(new URL("../import_ros", import.meta.url));
+const importer = fileURLToPath(new URL("../../import_ros", import.meta.url));
 
 // A sweep of 60,000 points and a grey image of 2 Mpx: noise, which no packing makes smaller, in half of the bytes.
 const noise = (length) => Uint8Array.from({ length }, (_, i) => ((i % 2) * Math.imul(i, 2654435761)) >>> 24);

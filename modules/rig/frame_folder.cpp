@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <spdlog/spdlog.h>
+
 #include "files/natural_order.hpp"
 
 namespace voqcal {
@@ -110,6 +112,13 @@ FrameFolder::FrameFolder(const DriverOptions& options,
     files_.push_back({paths[i], naming_ == FrameNaming::kTimes ? times[i] : synthetic_us});
   }
   round_us_ = files_.back().utime - files_.front().utime + std::llround(1e6 / options.rate_hz);
+}
+
+void FrameFolder::LeaveOut(const std::string& problem) {
+  if (++num_in_vain_ >= files_.size()) {
+    throw std::runtime_error("none of the folder's files can be read, the last for: " + problem);
+  }
+  if (num_rounds_ == 0) spdlog::warn("left out: {}", problem);
 }
 
 std::optional<FrameFile> FrameFolder::Next() {

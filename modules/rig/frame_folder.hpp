@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -50,17 +51,37 @@ class FrameFolder {
   /// The next file in natural order; nothing after the last, unless the options repeat.
   std::optional<FrameFile> Next();
 
+  /// What `read` makes of the next file that it can read; nothing after the last. Files that it
+  /// cannot read (std::runtime_error) are named in the log and left out.
+  /// @throws std::runtime_error if not one of the folder's files can be read.
+  template <typename Read>
+  auto NextReadable(const Read& read) -> std::optional<decltype(read(FrameFile{}))> {
+    while (const auto file = Next()) {
+      try {
+        auto frame = read(*file);
+        num_in_vain_ = 0;
+        return frame;
+      } catch (const std::runtime_error& error) {
+        LeaveOut(error.what());
+      }
+    }
+    return {};
+  }
+
   const std::vector<FrameFile>& files() const { return files_; }
   std::size_t size() const { return files_.size(); }
   FrameNaming naming() const { return naming_; }
 
  private:
+  void LeaveOut(const std::string& problem);
+
   std::vector<FrameFile> files_;
   FrameNaming naming_;
   bool is_repeating_;
   std::int64_t round_us_;  // how much later each round of a repetition is
   std::size_t next_ = 0;
   std::int64_t num_rounds_ = 0;
+  std::size_t num_in_vain_ = 0;  // files in a row that could not be read
 };
 
 }  // namespace voqcal

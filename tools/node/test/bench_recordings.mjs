@@ -1,5 +1,6 @@
 // bench_recordings.mjs FOLDER [MEGABYTES]: writes one recording in each format into FOLDER (as large as that: 300 MB unless
-// told) and prints how fast it is read and how fast import_ros makes a log of it.
+// told) and prints how fast it is read and how fast import_ros makes a log of it: by the time that one core worked, which
+// other programs and the disk do not change, and by the clock.
 
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, rmSync, statSync } from "node:fs";
@@ -13,7 +14,11 @@ const path = (name) => join(folder, name);
 const importer = fileURLToPath(new URL("../../import_ros", import.meta.url));
 
 // A sweep of 60,000 points and a grey image of 2 Mpx: noise, which no packing makes smaller, in half of the bytes.
-const noise = (length) => Uint8Array.from({ length }, (_, i) => ((i % 2) * Math.imul(i, 2654435761)) >>> 24);
+function noise(length) {
+  let state = 1;
+  const next = () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) >>> 24;
+  return Uint8Array.from({ length }, (_, i) => (i % 2 ? next() : 0));
+}
 const POINTS = noise(60_000 * 22);
 const PIXELS = noise(1920 * 1080);
 const header = (ns) => ({ seq: 0, stamp: { sec: Number(ns / 1_000_000_000n), nsec: Number(ns % 1_000_000_000n) }, frame_id: "sensor" });
@@ -44,11 +49,13 @@ function zstdChunk(data) {
   return { compression: "zstd", compressedData: execFileSync("zstd", ["-qc1"], { input: data, maxBuffer: 1 << 30 }) };
 }
 
-const seconds = async (run) => {
-  const begin = process.hrtime.bigint();
+/** What `run` took of the clock and (this process alone) of a core, in seconds. */
+async function secondsOf(run) {
+  const [begin, cpu] = [process.hrtime.bigint(), process.cpuUsage()];
   await run();
-  return Number(process.hrtime.bigint() - begin) / 1e9;
-};
+  const { user, system } = process.cpuUsage(cpu);
+  return { clock: Number(process.hrtime.bigint() - begin) / 1e9, core: (user + system) / 1e6 };
+}
 
 async function read(name) {
   const recording = await openRecording([path(name)], folder);
@@ -59,16 +66,21 @@ async function read(name) {
 }
 
 mkdirSync(folder, { recursive: true });
-const write = { ...KINDS };
-for (const [name, make] of Object.entries(write)) {
+for (const [name, make] of Object.entries(KINDS)) {
   rmSync(path(name), { force: true });
   await make();
   let numBytes;
-  const readS = await seconds(async () => (numBytes = await read(name)));
+  const reading = await secondsOf(async () => (numBytes = await read(name)));
   let done;
-  const importS = await seconds(() => (done = spawnSync("/usr/bin/time", ["-f", "%M", importer, path(name), "--out", path("out.lcm"), "--force"], { encoding: "utf8" })));
+  const importing = await secondsOf(() => {
+    const args = ["-f", "%U %S %M", importer, path(name), "--out", path("out.lcm"), "--force"];
+    done = spawnSync("/usr/bin/time", args, { encoding: "utf8" });
+  });
   if (done.status !== 0) throw new Error(done.stderr);
-  const rate = (s) => `${(numBytes / 1e6 / s).toFixed(0)} MB/s`;
-  const memory = `${(Number(done.stderr.trim().split("\n").at(-1)) / 1024).toFixed(0)} MB of memory`;
-  console.log(`${name}: ${(statSync(path(name)).size / 1e6).toFixed(0)} MB; read ${rate(readS)}, imported ${rate(importS)}, ${memory}`);
+  const [user, system, kilobytes] = done.stderr.trim().split("\n").at(-1).split(" ").map(Number);
+  const rates = ({ clock, core }) => [core, clock].map((s) => (numBytes / 1e6 / s).toFixed(0)).join(" MB a core's second, ") + " MB/s";
+  console.log(
+    `${name}: ${(statSync(path(name)).size / 1e6).toFixed(0)} MB; read ${rates(reading)}; ` +
+      `imported ${rates({ ...importing, core: user + system })}; ${(kilobytes / 1024).toFixed(0)} MB of memory`,
+  );
 }

@@ -17,8 +17,8 @@ export function judgeClocks(lidar, camera) {
   if (problem === undefined) return { useLogTimes: false };
   const apartS = logTimesApartS(lidar, camera);
   if (!(apartS < 0.1)) {
-    const words = `${problem}; nor do the times at which they were recorded agree (${inWords(apartS)} apart): stamps are used`;
-    return { useLogTimes: false, words };
+    const apart = `nor do the times at which they were recorded agree (${inWords(apartS)} apart)`;
+    return { useLogTimes: false, words: `${problem}; ${apart}: stamps are used` };
   }
   return {
     useLogTimes: true,

@@ -54,7 +54,13 @@ export async function scanBag(path) {
   const decompress = await loadDecompressHandlers();
   const file = new FileWindow(path);
   const connections = new Connections();
-  const part = { topics: connections.topics, startNs: undefined, isIndexed: false, remarks: [], close: () => file.close() };
+  const part = {
+    topics: connections.topics,
+    startNs: undefined,
+    isIndexed: false,
+    remarks: [],
+    close: () => file.close(),
+  };
   for (const { id, logTimeNs } of scannedMessages(file, decompress, connections, part.remarks)) {
     connections.count(id, 1);
     if (part.startNs === undefined || logTimeNs < part.startNs) part.startNs = logTimeNs;
@@ -133,7 +139,8 @@ function* chunkMessages({ fields, data }, offset, decompress, connections, remar
     const compression = fields.compression.toString();
     const bytes = compression === "none" ? data : decompress[compression](data, fields.size.readUInt32LE(0));
     const records = Buffer.from(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-    const slice = (from, length) => (from + length > records.length ? undefined : records.subarray(from, from + length));
+    const slice = (from, length) =>
+      from + length > records.length ? undefined : records.subarray(from, from + length);
     for (let at = 0; at < records.length; ) {
       const record = recordAt(slice, at);
       if (record === undefined) throw new Error(`ends within a record, at its byte ${at}`);

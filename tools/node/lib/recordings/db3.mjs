@@ -18,7 +18,13 @@ export async function openDb3(path) {
   const about = await tell(path);
   const { zstd } = await loadDecompressHandlers();
   const byId = new Map(about.topics.map((topic) => [topic.id, topic]));
-  const part = { topics: topicsOf(about.topics), startNs: BigInt(about.start_ns), isIndexed: false, remarks: [], close() {} };
+  const part = {
+    topics: topicsOf(about.topics),
+    startNs: BigInt(about.start_ns),
+    isIndexed: false,
+    remarks: [],
+    close() {},
+  };
   part.messages = async function* messages(names) {
     const ids = about.topics.filter(({ name }) => names.includes(name)).map(({ id }) => id);
     if (ids.length === 0) return;

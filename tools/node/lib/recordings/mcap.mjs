@@ -63,7 +63,13 @@ export async function scanMcap(path) {
   const decompress = await loadDecompressHandlers();
   const file = new FileWindow(path);
   const channels = new Channels();
-  const part = { topics: channels.topics, startNs: undefined, isIndexed: false, remarks: [], close: () => file.close() };
+  const part = {
+    topics: channels.topics,
+    startNs: undefined,
+    isIndexed: false,
+    remarks: [],
+    close: () => file.close(),
+  };
   for (const { channelId, logTime } of scannedMessages(file, decompress, channels, part.remarks, true)) {
     channels.count(channelId);
     if (part.startNs === undefined || logTime < part.startNs) part.startNs = logTime;
@@ -127,6 +133,8 @@ function rosDecoder({ topic, messageEncoding, schema }) {
 
 /** Every message in the order of the file, each chunk's by time. Without data if `isCounting`. */
 function* scannedMessages(file, decompress, channels, remarks, isCounting) {
+  const inChunk = (bytes, at, isCut) =>
+    inOrder(chunkMessages(bytes, at, isCut, decompress, channels, remarks));
   for (let at = MCAP_MAGIC.length; ; ) {
     const head = file.at(at, 9);
     const opcode = head?.readUInt8(0);
@@ -138,12 +146,12 @@ function* scannedMessages(file, decompress, channels, remarks, isCounting) {
           ? "was not closed by its recorder: all of it is read"
           : `is cut off or damaged at byte ${at} of ${file.numBytes}: what is before it is read`,
       );
-      if (opcode === OP.CHUNK) yield* inOrder(chunkMessages(file.at(at + 9, file.numBytes - at - 9), at, decompress, channels, [], true));
+      if (opcode === OP.CHUNK) yield* inChunk(file.at(at + 9, file.numBytes - at - 9), at, true);
       return;
     }
     const begin = at + 9;
     at = begin + length;
-    if (opcode === OP.CHUNK) yield* inOrder(chunkMessages(file.at(begin, length), begin, decompress, channels, remarks));
+    if (opcode === OP.CHUNK) yield* inChunk(file.at(begin, length), begin, false);
     else if (opcode === OP.MESSAGE && isCounting) yield messageOf(file.at(begin, Math.min(length, 22)));
     else if (opcode <= OP.MESSAGE) yield* take(opcode, file.at(begin, length), channels);
   }
@@ -161,12 +169,12 @@ function* take(opcode, bytes, channels) {
 }
 
 /** Of a chunk that is cut off: what is before the cut, where it is not compressed. */
-function* chunkMessages(bytes, offset, decompress, channels, remarks, isCut = false) {
+function* chunkMessages(bytes, offset, isCut, decompress, channels, remarks) {
   let records;
   try {
     records = chunkRecords(bytes, decompress, isCut);
   } catch (error) {
-    remarks.push(`the chunk at byte ${offset} is damaged and left out (${error.message})`);
+    if (!isCut) remarks.push(`the chunk at byte ${offset} is damaged and left out (${error.message})`);
     return;
   }
   for (let at = 0; at + 9 <= records.length; ) {
@@ -182,7 +190,8 @@ function chunkRecords(bytes, decompress, isCut) {
   const numBytes = bytes.readBigUInt64LE(16);
   const crc = bytes.readUInt32LE(24);
   const compression = text(bytes, 28);
-  const packed = bytes.subarray(compression.end + 8, compression.end + 8 + Number(bytes.readBigUInt64LE(compression.end)));
+  const begin = compression.end + 8;
+  const packed = bytes.subarray(begin, begin + Number(bytes.readBigUInt64LE(compression.end)));
   if (compression.value !== "" && !decompress[compression.value]) {
     throw new Error(`compressed by '${compression.value}'`);
   }

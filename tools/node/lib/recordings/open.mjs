@@ -51,7 +51,8 @@ function filesOf(path) {
   const names = readdirSync(path).filter((name) => ENDINGS.test(name) && !name.startsWith("."));
   // `ros2 bag play` leaves the unpacked file beside the packed one.
   const isUnpackedThere = (name) => names.includes(name.replace(/\.(zstd|zst)$/, "")) && /\.zstd?$/.test(name);
-  const files = names.filter((name) => !isUnpackedThere(name)).sort((a, b) => a.localeCompare(b, "en", { numeric: true }));
+  const files = names.filter((name) => !isUnpackedThere(name));
+  files.sort((a, b) => a.localeCompare(b, "en", { numeric: true }));
   if (files.length === 0) throw new UserError(`${path}: is a folder without .bag, .mcap or .db3 files`);
   return files.map((name) => join(path, name));
 }

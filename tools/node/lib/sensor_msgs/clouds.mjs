@@ -38,7 +38,8 @@ export function asCloud(message, type) {
     throw new UserError(`the cloud of ${width} x ${height} points of ${point_step} bytes has ${data.length} bytes`);
   }
   for (const axis of ["x", "y", "z"]) {
-    if (!fieldOf(message.fields, axis)) throw new UserError(`the cloud has no field ${axis}: ${namesOf(message.fields)}`);
+    if (fieldOf(message.fields, axis)) continue;
+    throw new UserError(`the cloud has no field ${axis}: ${namesOf(message.fields)}`);
   }
   return { ...message, height, row_step };
 }
@@ -66,10 +67,14 @@ export function timeKind(clouds) {
   const { name } = fieldOf(clouds[0].fields, "time") ?? { name: "time" };
   const span = median(ranges.map(({ least, most }) => most - least));
   const unit = UNITS.find(({ perSecond }) => span >= SWEEP_S[0] * perSecond && span <= SWEEP_S[1] * perSecond);
-  if (!unit) return { words: `the points' ${name} spans ${span} in a sweep, which is a time in no unit: not looked at` };
+  if (!unit) return { words: `the points' ${name} spans ${span} in a sweep, a time in no unit: not looked at` };
   const from = median(ranges.map((range) => originOf(range, unit.perSecond)));
   const origin = ["stamp", "epoch", "first"][from];
-  const counted = { stamp: "after the stamp", epoch: "since the stamps' epoch", first: "of a clock of its own: counted from each sweep's first point" };
+  const counted = {
+    stamp: "after the stamp",
+    epoch: "since the stamps' epoch",
+    first: "of a clock of its own: counted from each sweep's first point",
+  };
   return { perSecond: unit.perSecond, from: origin, words: `the points' ${name}: ${unit.name} ${counted[origin]}` };
 }
 

@@ -7,8 +7,8 @@ import { buffer } from "./messages.mjs";
 // image_t::pixelformat (lcmtypes/image_t.lcm).
 const PIXEL = { GRAY: 1497715271, RGB: 859981650, BGR: 861030210, MJPEG: 1196444237, PNG: 541544016 };
 
-// By encoding, in small letters: our format; numbers a pixel, of so many bytes; which of them are kept, from `first` on in
-// steps of a pixel. yuv: only the brightness is kept, which is what boards are found by.
+// By encoding, in small letters: our format; numbers a pixel, of so many bytes; how many of them are kept,
+// from `first` on. yuv: only the brightness is kept, which is what boards are found by.
 const GRAY = { format: PIXEL.GRAY, numbers: 1, bytes: 1, keep: 1, first: 0 };
 const ENCODINGS = {
   mono8: GRAY,
@@ -134,8 +134,9 @@ function numbersOf({ step, data, is_bigendian }, kind) {
 }
 
 /**
- * A Bayer mosaic's brightness (R + 2 G + B) / 4: the mean over each pixel's 3 x 3 neighbours with weights 1 2 1 each way, at
- * which all four patterns give the same. Symmetric, so that no edge moves. The border has its neighbours mirrored.
+ * A Bayer mosaic's brightness (R + 2 G + B) / 4: the mean over each pixel's 3 x 3 neighbours with weights
+ * 1 2 1 each way, at which all four patterns give the same. Symmetric, so that no edge moves. The border has
+ * its neighbours mirrored.
  */
 function brightness(mosaic, width, height) {
   const sums = new Uint16Array(width * height);

@@ -23,20 +23,23 @@ class FolderCameraSource : public CameraSource {
       : folder_(options, {".png", ".jpg", ".jpeg"}) {}
 
   std::optional<TimedImage> Next() override {
-    const auto file = folder_.Next();
-    has_ended_ = !file;
-    if (!file) return {};
-    const std::string text = ReadWholeFile(file->path);
-    TimedImage image{file->utime, {text.begin(), text.end()}};
-    if (!InspectEncodedImage(image.bytes)) {
-      throw std::runtime_error(file->path.string() + ": neither a JPEG nor a PNG");
-    }
+    auto image = folder_.NextReadable(Read);
+    has_ended_ = !image;
     return image;
   }
 
   bool HasEnded() const override { return has_ended_; }
 
  private:
+  static TimedImage Read(const FrameFile& file) {
+    const std::string text = ReadWholeFile(file.path);
+    TimedImage image{file.utime, {text.begin(), text.end()}};
+    const auto info = InspectEncodedImage(image.bytes);
+    if (!info) throw std::runtime_error(file.path.string() + ": neither a JPEG nor a PNG");
+    if (!info->has_end) throw std::runtime_error(file.path.string() + ": is cut off");
+    return image;
+  }
+
   FrameFolder folder_;
   bool has_ended_ = false;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cctype>
 #include <cstdarg>
 #include <cstdio>
 #include <string>
@@ -18,6 +19,19 @@ namespace voqcal {
   std::vsnprintf(text.data(), text.size() + 1, format, again);
   va_end(again);
   return text;
+}
+
+/// Each number of a text as N: "row 17 has 5 bytes" and "row 18 has 7 bytes" are of one kind.
+inline std::string WithoutNumbers(const std::string& text) {
+  std::string kind;
+  for (const unsigned char c : text) {
+    if (std::isdigit(c) == 0) {
+      kind += static_cast<char>(c);
+    } else if (kind.empty() || kind.back() != 'N') {
+      kind += 'N';
+    }
+  }
+  return kind;
 }
 
 }  // namespace voqcal

@@ -70,6 +70,8 @@ std::vector<fs::path> FilesInNaturalOrder(const fs::path& folder,
   }
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : entries) {
+    // Hidden files, such as the "._pose1.png" that macOS leaves on foreign disks, are none of ours.
+    if (entry.path().filename().string().front() == '.') continue;
     const std::string extension = LowerCase(entry.path().extension().string());
     const bool is_wanted =
         std::find(extensions.begin(), extensions.end(), extension) != extensions.end();

@@ -1,10 +1,10 @@
 #include "files/point_cloud_file.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "core/lidar/cloud_fields.hpp"
 #include "files/atomic_file.hpp"
 #include "files/point_cloud_table.hpp"
 
@@ -17,44 +17,35 @@ namespace fs = std::filesystem;
   throw std::runtime_error(path.string() + ": " + what);
 }
 
-std::optional<std::size_t> ColumnOf(const CloudTable& table, const char* name) {
-  const auto found = std::find(table.names.begin(), table.names.end(), name);
-  if (found == table.names.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - table.names.begin());
-}
-
-std::uint16_t RingOf(double ring, std::size_t point_index, const fs::path& path) {
-  constexpr double kMaxRing = 65535;
-  if (!(ring >= 0 && ring <= kMaxRing && ring == std::floor(ring))) {
-    Fail(path,
-         "the ring of point " + std::to_string(point_index) +
-             " must be a whole number from 0 to 65535, is " + std::to_string(ring));
+/// A column by any of its usual names; empty if the file does not have it.
+std::vector<double> Column(const CloudTable& table, const char* field) {
+  const auto column = FindField(table.names, field);
+  if (!column) return {};
+  std::vector<double> values(table.num_points);
+  for (std::size_t i = 0; i < table.num_points; ++i) {
+    values[i] = table.values[i * table.names.size() + *column];
   }
-  return static_cast<std::uint16_t>(ring);
+  return values;
 }
 
 PointCloud Convert(const CloudTable& table, const fs::path& path) {
-  const auto x = ColumnOf(table, "x");
-  const auto y = ColumnOf(table, "y");
-  const auto z = ColumnOf(table, "z");
-  const auto intensity = ColumnOf(table, "intensity");
-  const auto ring = ColumnOf(table, "ring");
-  const auto time = ColumnOf(table, "time");
-  if (!x || !y || !z) Fail(path, "must have the fields x, y and z");
+  const std::vector<double> x = Column(table, "x");
+  const std::vector<double> y = Column(table, "y");
+  const std::vector<double> z = Column(table, "z");
+  if (x.empty() || y.empty() || z.empty()) Fail(path, "must have the fields x, y and z");
+  const std::vector<double> intensity = Column(table, "intensity");
 
   PointCloud cloud;
-  cloud.has_intensity = intensity.has_value();
-  cloud.has_ring = ring.has_value();
-  cloud.has_time = time.has_value();
+  cloud.has_intensity = !intensity.empty();
   cloud.points.resize(table.num_points);
   for (std::size_t i = 0; i < table.num_points; ++i) {
-    const double* values = table.values.data() + i * table.names.size();
-    LidarPoint& point = cloud.points[i];
-    point.position_m = Eigen::Vector3d(values[*x], values[*y], values[*z]).cast<float>();
-    if (intensity) point.intensity = static_cast<float>(values[*intensity]);
-    if (ring) point.ring = RingOf(values[*ring], i, path);
-    if (time) point.time_s = static_cast<float>(values[*time]);
+    cloud.points[i].position_m = Eigen::Vector3d(x[i], y[i], z[i]).cast<float>();
+    if (cloud.has_intensity) cloud.points[i].intensity = static_cast<float>(intensity[i]);
   }
+  const std::vector<double> rings = Column(table, "ring");
+  if (!rings.empty()) SetRings(rings, &cloud);
+  const std::vector<double> times = Column(table, "time");
+  if (!times.empty()) SetTimes(times, &cloud);
   return cloud;
 }
 

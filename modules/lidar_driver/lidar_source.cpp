@@ -19,10 +19,11 @@ class FolderLidarSource : public LidarSource {
   explicit FolderLidarSource(const FrameOptions& options) : folder_(options, {".pcd", ".ply"}) {}
 
   std::optional<TimedCloud> Next() override {
-    const auto file = folder_.Next();
-    has_ended_ = !file;
-    if (has_ended_) return {};
-    return TimedCloud{file->utime, ReadPointCloud(file->path)};
+    auto cloud = folder_.NextReadable([](const FrameFile& file) {
+      return TimedCloud{file.utime, ReadPointCloud(file.path)};
+    });
+    has_ended_ = !cloud;
+    return cloud;
   }
 
   bool HasEnded() const override { return has_ended_; }

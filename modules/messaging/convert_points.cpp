@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <initializer_list>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "core/lidar/cloud_fields.hpp"
 
 namespace voqcal {
 namespace {
@@ -72,14 +72,12 @@ void Put(T value, std::uint8_t** end) {
   throw std::runtime_error("point cloud message: " + cause);
 }
 
-const pointfield_t* FindField(const pointcloud2_t& message,
-                              std::initializer_list<const char*> names) {
-  for (const char* name : names) {
-    for (const pointfield_t& field : message.fields) {
-      if (field.name == name) return &field;
-    }
-  }
-  return nullptr;
+/// A field by any of its usual names.
+const pointfield_t* FieldOf(const pointcloud2_t& message, const char* name) {
+  std::vector<std::string> names;
+  for (const pointfield_t& field : message.fields) names.push_back(field.name);
+  const auto found = FindField(names, name);
+  return found ? &message.fields[*found] : nullptr;
 }
 
 /// One field of each point as a double, which holds every type that occurs.
@@ -149,20 +147,19 @@ class FieldReader {
   std::size_t num_bytes_ = 0;
 };
 
-std::optional<FieldReader> Reader(const pointcloud2_t& message,
-                                  std::initializer_list<const char*> names) {
-  const pointfield_t* field = FindField(message, names);
+std::optional<FieldReader> Reader(const pointcloud2_t& message, const char* name) {
+  const pointfield_t* field = FieldOf(message, name);
   if (field == nullptr) return std::nullopt;
   return FieldReader(message, *field);
 }
 
 FieldReader RequiredReader(const pointcloud2_t& message, const char* name) {
-  const auto reader = Reader(message, {name});
+  const auto reader = Reader(message, name);
   if (!reader) Fail("no field '" + std::string(name) + "'");
   return *reader;
 }
 
-/// Bytes from one row to the next. Some drivers leave row_step 0 in clouds of one row.
+/// Bytes from one row to the next. Some drivers leave row_step 0.
 std::int64_t CheckedRowStep(const pointcloud2_t& message) {
   if (message.height < 0 || message.width < 0) {
     Fail(std::to_string(message.width) + " x " + std::to_string(message.height) + " points");
@@ -175,8 +172,7 @@ std::int64_t CheckedRowStep(const pointcloud2_t& message) {
   if (message.width == 0 || message.height == 0) return 0;
   if (message.point_step <= 0) Fail("point_step is " + std::to_string(message.point_step));
   const std::int64_t row_bytes = std::int64_t{message.width} * message.point_step;
-  const bool is_one_row = message.height == 1;
-  const std::int64_t row_step = is_one_row && message.row_step == 0 ? row_bytes : message.row_step;
+  const std::int64_t row_step = message.row_step == 0 ? row_bytes : message.row_step;
   if (row_step < row_bytes) {
     Fail("row_step is " + std::to_string(row_step) + " but a row has " + std::to_string(row_bytes) +
          " bytes");
@@ -188,13 +184,6 @@ std::int64_t CheckedRowStep(const pointcloud2_t& message) {
          std::to_string(message.data_nbytes));
   }
   return row_step;
-}
-
-std::uint16_t CheckedRing(double ring) {
-  if (!(ring >= 0.0 && ring <= std::numeric_limits<std::uint16_t>::max())) {
-    Fail("ring " + std::to_string(ring) + " is not from 0 to 65535");
-  }
-  return static_cast<std::uint16_t>(ring);
 }
 
 float TimeAfterUtimeS(double value, bool is_integer, std::int64_t utime) {
@@ -241,26 +230,28 @@ PointCloud FromMessage(const pointcloud2_t& message) {
   const FieldReader x = RequiredReader(message, "x");
   const FieldReader y = RequiredReader(message, "y");
   const FieldReader z = RequiredReader(message, "z");
-  const auto intensity = Reader(message, {"intensity"});
-  const auto ring = Reader(message, {"ring", "channel"});
-  const auto time = Reader(message, {"time", "t", "timestamp"});
+  const auto intensity = Reader(message, "intensity");
+  const auto ring = Reader(message, "ring");
+  const auto time = Reader(message, "time");
   cloud.has_intensity = intensity.has_value();
-  cloud.has_ring = ring.has_value();
   cloud.has_time = time.has_value();
 
   cloud.points.reserve(static_cast<std::size_t>(message.width) *
                        static_cast<std::size_t>(message.height));
+  std::vector<double> rings;
+  if (ring) rings.reserve(cloud.points.capacity());
   for (std::int64_t row = 0; row < message.height; ++row) {
     const std::uint8_t* bytes = message.data.data() + row * row_step;
     for (std::int32_t i = 0; i < message.width; ++i, bytes += message.point_step) {
       LidarPoint point;
       point.position_m = Eigen::Vector3d(x.Read(bytes), y.Read(bytes), z.Read(bytes)).cast<float>();
       if (intensity) point.intensity = static_cast<float>(intensity->Read(bytes));
-      if (ring) point.ring = CheckedRing(ring->Read(bytes));
+      if (ring) rings.push_back(ring->Read(bytes));
       if (time) point.time_s = TimeAfterUtimeS(time->Read(bytes), time->IsInteger(), message.utime);
       cloud.points.push_back(point);
     }
   }
+  if (ring) SetRings(rings, &cloud);
   return cloud;
 }
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <set>
 #include <stdexcept>
+
+#include <spdlog/spdlog.h>
 
 #include "files/natural_order.hpp"
 
@@ -16,35 +17,66 @@ bool EndsWith(const std::string& text, const std::string& ending) {
          text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-// The numbers of the names, or their places where the names do not number them.
-std::vector<std::int64_t> NumberFrames(const std::vector<std::filesystem::path>& paths) {
+bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+/// The last run of digits in a text.
+std::string LastDigits(const std::string& text) {
+  const auto end = std::find_if(text.rbegin(), text.rend(), IsDigit).base();
+  auto begin = end;
+  while (begin != text.begin() && IsDigit(*(begin - 1))) --begin;
+  return {begin, end};
+}
+
+using NumberOf = std::optional<std::int64_t> (*)(const std::filesystem::path&);
+
+/// What the names say, if each says something, later files more than earlier ones; else nothing.
+std::vector<std::int64_t> Rising(const std::vector<std::filesystem::path>& paths, NumberOf of) {
   std::vector<std::int64_t> numbers;
-  std::set<std::int64_t> distinct;
   for (const auto& path : paths) {
-    const auto number = FrameNumber(path);
-    if (!number || !distinct.insert(*number).second) break;
+    const auto number = of(path);
+    if (!number || (!numbers.empty() && *number <= numbers.back())) return {};
     numbers.push_back(*number);
   }
-  const bool is_numbered =
-      numbers.size() == paths.size() && std::is_sorted(numbers.begin(), numbers.end());
-  if (is_numbered) return numbers;
-  numbers.clear();
-  for (std::size_t i = 0; i < paths.size(); ++i) numbers.push_back(static_cast<std::int64_t>(i));
   return numbers;
+}
+
+/// How many us one unit of a time of so many digits is, and how many units; 0 for no time.
+std::int64_t TimeUs(const std::string& digits) {
+  switch (digits.size()) {
+    case 10:
+      return std::stoll(digits) * 1'000'000;
+    case 13:
+      return std::stoll(digits) * 1000;
+    case 16:
+      return std::stoll(digits);
+    case 19:
+      return digits[0] == '9' ? 0 : std::stoll(digits) / 1000;
+    default:
+      return 0;
+  }
 }
 
 }  // namespace
 
 std::optional<std::int64_t> FrameNumber(const std::filesystem::path& path) {
   constexpr std::size_t kMaxDigits = 9;  // longer ones are times or hashes
-  const std::string stem = path.stem().string();
-  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
-  const auto end = std::find_if(stem.rbegin(), stem.rend(), is_digit).base();
-  auto begin = end;
-  while (begin != stem.begin() && is_digit(static_cast<unsigned char>(*(begin - 1)))) --begin;
-  const std::string digits(begin, end);
+  const std::string digits = LastDigits(path.stem().string());
   if (digits.empty() || digits.size() > kMaxDigits) return {};
   return std::stoll(digits);
+}
+
+std::optional<std::int64_t> FrameTime(const std::filesystem::path& path) {
+  const std::string stem = path.stem().string();
+  const std::string last = LastDigits(stem);
+  const std::string before = stem.substr(0, stem.rfind(last));
+  // Seconds and decimals, parted by a point or, where a program avoids that, by something else.
+  const std::string seconds = before.empty() ? "" : LastDigits(before.substr(0, before.size() - 1));
+  const bool has_decimals =
+      seconds.size() == 10 && before.size() > 10 && before.rfind(seconds) == before.size() - 11;
+  const std::int64_t time_us =
+      has_decimals ? TimeUs(seconds) + std::stoll((last + "000000").substr(0, 6)) : TimeUs(last);
+  if (time_us <= 0) return {};
+  return time_us;
 }
 
 void RequireFolder(const FrameOptions& options, const std::string& where) {
@@ -53,8 +85,10 @@ void RequireFolder(const FrameOptions& options, const std::string& where) {
   }
 }
 
-FrameFolder::FrameFolder(const FrameOptions& options, const std::vector<std::string>& extensions)
-    : is_repeating_(options.is_repeating) {
+FrameFolder::FrameFolder(const FrameOptions& options,
+                         const std::vector<std::string>& extensions,
+                         bool are_places)
+    : naming_(FrameNaming::kPlaces), is_repeating_(options.is_repeating) {
   std::vector<std::filesystem::path> paths = FilesInNaturalOrder(options.folder, extensions);
   const auto is_other = [&options](const std::filesystem::path& path) {
     return !EndsWith(path.filename().string(), options.file_ending);
@@ -64,12 +98,27 @@ FrameFolder::FrameFolder(const FrameOptions& options, const std::vector<std::str
     throw std::runtime_error(options.folder.string() + ": no file whose name ends with '" +
                              options.file_ending + "'");
   }
-  const std::vector<std::int64_t> numbers = NumberFrames(paths);
+  const std::vector<std::int64_t> times = Rising(paths, FrameTime);
+  const std::vector<std::int64_t> numbers = Rising(paths, FrameNumber);
+  if (!are_places && !times.empty())
+    naming_ = FrameNaming::kTimes;
+  else if (!are_places && !numbers.empty())
+    naming_ = FrameNaming::kNumbers;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    const double time_s = static_cast<double>(numbers[i]) / options.rate_hz;
-    files_.push_back({paths[i], kSyntheticEpochUtime + std::llround(time_s * 1e6)});
+    const std::int64_t number =
+        naming_ == FrameNaming::kNumbers ? numbers[i] : static_cast<std::int64_t>(i);
+    const std::int64_t synthetic_us =
+        kSyntheticEpochUtime + std::llround(static_cast<double>(number) / options.rate_hz * 1e6);
+    files_.push_back({paths[i], naming_ == FrameNaming::kTimes ? times[i] : synthetic_us});
   }
   round_us_ = files_.back().utime - files_.front().utime + std::llround(1e6 / options.rate_hz);
+}
+
+void FrameFolder::LeaveOut(const std::string& problem) {
+  if (++num_in_vain_ >= files_.size()) {
+    throw std::runtime_error("none of the folder's files can be read, the last for: " + problem);
+  }
+  if (num_rounds_ == 0) spdlog::warn("left out: {}", problem);
 }
 
 std::optional<FrameFile> FrameFolder::Next() {

@@ -19,7 +19,7 @@ bool HasNode() {
          test::Run({"sh", "-c", "command -v node"}).status == 0;
 }
 
-class ImportRos : public ::testing::TestWithParam<const char*> {
+class ImportRos : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!HasNode()) GTEST_SKIP() << "without Node.js or its packages: tools/setup installs them";
@@ -34,8 +34,8 @@ class ImportRos : public ::testing::TestWithParam<const char*> {
 
   /// All of extrinsic.yaml but the hash of the samples: they hold the sweeps, whose fields are laid
   /// out as the recording has them.
-  std::string ResultOf(const std::string& log) const {
-    MustRun({test::Program("calibrate"), "--rig", rig_, "--log", log, "--out", log + ".out"});
+  std::string ResultOf(const std::string& log, const std::string& flag = "--log") const {
+    MustRun({test::Program("calibrate"), "--rig", rig_, flag, log, "--out", log + ".out"});
     const std::string text = ReadWholeFile(log + ".out/extrinsic.yaml");
     const std::size_t hash = text.find("\n  log_sha256:") + 1;
     return text.substr(0, hash) + text.substr(text.find('\n', hash));
@@ -47,7 +47,9 @@ class ImportRos : public ::testing::TestWithParam<const char*> {
       test::Replaced(test::ShortRigText(), "num_still_frames: 3", "num_still_frames: 1"));
 };
 
-TEST_P(ImportRos, GivesTheResultOfTheLog) {
+class ImportRosKinds : public ImportRos, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ImportRosKinds, GivesTheResultOfTheLog) {
   test::WriteStopsLog(LoadRig(rig_), Path("raw.lcm"));
   const std::string recording = Path(std::string("raw.") + GetParam());
   MustRun({"node", kToRecording, Path("raw.lcm"), recording});
@@ -62,9 +64,16 @@ TEST_P(ImportRos, GivesTheResultOfTheLog) {
   EXPECT_EQ(ResultOf(Path("imported.lcm")), ResultOf(Path("raw.lcm")));
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ImportRos, ::testing::Values("bag", "mcap"), [](const auto& kind) {
-  return std::string(kind.param);
-});
+INSTANTIATE_TEST_SUITE_P(Kinds,
+                         ImportRosKinds,
+                         ::testing::Values("bag", "mcap"),
+                         [](const auto& kind) { return std::string(kind.param); });
+
+TEST_F(ImportRos, IsDoneByCalibrateItself) {
+  test::WriteStopsLog(LoadRig(rig_), Path("raw.lcm"));
+  MustRun({"node", kToRecording, Path("raw.lcm"), Path("raw.db3")});
+  EXPECT_EQ(ResultOf(Path("raw.db3"), "--bag"), ResultOf(Path("raw.lcm")));
+}
 
 }  // namespace
 }  // namespace voqcal

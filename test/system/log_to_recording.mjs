@@ -1,11 +1,12 @@
 // log_to_recording.mjs LOG OUT: an LCM log of LIDAR_POINTS and CAMERA_IMAGE as a recording of ROS, a
-// bag or (OUT ends in .mcap) MCAP. For import_ros_test.
+// bag or (OUT ends in .mcap or .db3) of ROS 2. For import_ros_test.
 import { readLog } from "../../tools/node/lib/lcm_log.mjs";
 import { voqcalTypes } from "../../tools/node/lib/lcm_types.mjs";
 import {
   cloudToRos,
   compressedToRos,
   writeBag,
+  writeDb3,
   writeMcap,
 } from "../../tools/node/test/recording_writers.mjs";
 
@@ -23,4 +24,5 @@ const messages = [...readLog(log)].filter(isWanted).map(({ utime, channel, bytes
   };
 });
 if (out.endsWith(".mcap")) await writeMcap(out, messages);
+else if (out.endsWith(".db3")) writeDb3(out, messages);
 else writeBag(out, messages);

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "calibrate/advice.hpp"
+#include "calibrate/bag.hpp"
 #include "calibrate/collect.hpp"
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
@@ -24,9 +25,14 @@ namespace {
 struct CalibrateArgs {
   std::filesystem::path rig;
   InputPaths input;
+  BagInput bag;  // instead of input.log
   std::filesystem::path out;
   bool is_json = false;
 };
+
+std::string Given(const CalibrateArgs& args) {
+  return args.bag.paths.empty() ? args.input.Given().string() : args.bag.paths.front();
+}
 
 // Moves the finished files to where they were asked for, the result last. A report that could not
 // be made must not leave an earlier one beside a new result.
@@ -57,12 +63,14 @@ void RunCalibrate(const CalibrateArgs& args) {
   RequireNotBeingWritten(args.out /
                          kSamplesLogName);  // a live session's, which must not be replaced
   const ScratchFolder scratch(args.out);
-  const auto run = CollectSamples(rig, args.input, scratch.path());
+  InputPaths input = args.input;
+  if (!args.bag.paths.empty()) input.log = ImportBag(rig, args.bag, scratch.path());
+  const auto run = CollectSamples(rig, input, scratch.path());
   run->Finish(/*is_collecting_only=*/false);
   if (!run->assessor().result()) {
-    throw std::runtime_error(
-        args.input.Given().string() + ": no calibration: " + run->assessor().problem() + " (" +
-        CountsOf(*run) + ")" + EarlierResultIn(args.out) + FailureAdvice(*run));
+    throw std::runtime_error(Given(args) + ": no calibration: " + run->assessor().problem() + " (" +
+                             CountsOf(*run) + ")" + EarlierResultIn(args.out) +
+                             FailureAdvice(*run));
   }
   const std::string report_problem = WriteReport(rig, *run, scratch.path());
   Deliver(scratch.path(), args.out);
@@ -90,7 +98,23 @@ int main(int argc, char** argv) {
   input->add_option("--log", args.input.log, "A recording (LCM log), or a session's samples.lcm");
   input->add_option(
       "--poses", args.input.poses, "Extracted features: poses.csv of cam_lidar_calibration");
+  auto* bag =
+      input->add_option("--bag",
+                        args.bag.paths,
+                        "A recording of ROS 1 or 2: .bag, .mcap, .db3, their folder; several "
+                        "files if it is split");
   input->require_option(1);
+  app.add_option("--lidar-topic", args.bag.lidar_topic, "Of --bag, unless there is only one")
+      ->needs(bag);
+  app.add_option("--image-topic", args.bag.image_topic, "Of --bag, unless there is only one")
+      ->needs(bag);
+  app.add_option(
+         "--times",
+         args.bag.times,
+         "Of --bag: a message's time is its stamp, or when it was recorded (log); auto takes "
+         "stamps unless they are of different clocks")
+      ->check(CLI::IsMember({"auto", "stamps", "log"}))
+      ->needs(bag);
   app.add_option(
          "--out",
          args.out,

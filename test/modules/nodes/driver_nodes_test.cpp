@@ -145,6 +145,21 @@ TEST_F(DriverNodesTest, NameAFolderThatIsMissingOrEmpty) {
               HasSubstr("camera_driver.folder: must be given"));
 }
 
+TEST_F(DriverNodesTest, LeaveOutFilesThatCannotBeRead) {
+  folder_.Write("pose1.pcd", PcdAt(1));
+  folder_.Write("pose2.pcd", "no cloud at all");
+  folder_.Write("pose3.pcd", PcdAt(3));
+  folder_.Write("._pose4.pcd", "of another system");
+  LidarDriverNode lidar(rig_, &bus_);
+  RunToTheEnd(&lidar, &bus_);
+  EXPECT_THAT(clouds_.messages, SizeIs(2));
+  folder_.Write("pose1.png", "");
+  WriteImage("pose2.png", 2);
+  CameraDriverNode camera(rig_, &bus_);
+  RunToTheEnd(&camera, &bus_);
+  EXPECT_THAT(images_.messages, SizeIs(1));
+}
+
 TEST_F(DriverNodesTest, NameAFileThatCannotBeRead) {
   const auto cloud = folder_.Write("pose1.pcd", "no cloud at all");
   LidarDriverNode node(rig_, &bus_);

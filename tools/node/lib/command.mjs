@@ -12,9 +12,13 @@ class UsageError extends Error {}
  * Runs `body(flags, positional)` and ends the process: status 0, 1 (an error of `body`) or 2 (flags).
  *
  * @param {{name: string, usage: string, options: object, numPositional: number, required: string[]}} command
- *     `options` as node's parseArgs takes them.
+ *     `options` as node's parseArgs takes them; minPositional instead of numPositional takes more files too.
  */
 export async function runCommand(command, body) {
+  // Ends by way of process "exit": who has an unfinished file removes it there.
+  for (const [signal, number] of [["SIGINT", 2], ["SIGTERM", 15], ["SIGHUP", 1]]) {
+    process.once(signal, () => process.exit(128 + number));
+  }
   try {
     const { values, positionals } = parse(command);
     if (values.help) {
@@ -42,10 +46,10 @@ function parse(command) {
 }
 
 function requireAll(command, values, positionals) {
-  if (positionals.length !== command.numPositional) {
-    throw new UsageError(
-      `wants ${command.numPositional} file, got ${positionals.length} (--help lists the flags)`,
-    );
+  const num = positionals.length;
+  const { numPositional: wanted, minPositional: least } = command;
+  if (num !== (wanted ?? num) || num < (least ?? 0)) {
+    throw new UsageError(`wants ${wanted ?? `at least ${least}`} file, got ${num} (--help lists the flags)`);
   }
   for (const flag of command.required) {
     if (values[flag] === undefined) {

@@ -44,10 +44,12 @@ export class LogWriter {
   #path;
   #file;
   #numEvents = 0n;
+  #remove = () => rmSync(this.#unfinished(), { force: true });
 
   constructor(path) {
     this.#path = path;
     this.#file = open(this.#unfinished(), "w");
+    process.once("exit", this.#remove);
   }
 
   write(utime, channel, bytes) {
@@ -58,18 +60,24 @@ export class LogWriter {
     header.writeBigInt64BE(utime, 12);
     header.writeUInt32BE(name.length, 20);
     header.writeUInt32BE(bytes.length, 24);
-    const event = Buffer.concat([header, name, bytes]);
-    for (let done = 0; done < event.length; ) done += writeSync(this.#file, event, done);
+    this.#writeAll(Buffer.concat([header, name]));
+    this.#writeAll(bytes);
   }
 
   finish() {
     closeSync(this.#file);
     renameSync(this.#unfinished(), this.#path);
+    process.off("exit", this.#remove);
   }
 
   abandon() {
     closeSync(this.#file);
-    rmSync(this.#unfinished(), { force: true });
+    this.#remove();
+    process.off("exit", this.#remove);
+  }
+
+  #writeAll(bytes) {
+    for (let done = 0; done < bytes.length; ) done += writeSync(this.#file, bytes, done);
   }
 
   #unfinished() {

@@ -46,7 +46,7 @@ const sample = {
   utime: UTIME,
   num_frames: 1,
   lidar: zero({
-    edge_lengths_m: [0, 0, 0, 0], plane_rms_m: 0, num_beams: 0, log_likelihood: 0,
+    sides: [0, 0, 0, 0], edge_lengths_m: [0, 0, 0, 0], plane_rms_m: 0, num_beams: 0, log_likelihood: 0,
     num_points: 0, points: [], num_rings: 0, rings: [],
   }),
   camera: zero({

@@ -1,9 +1,11 @@
-// What the tests import: recordings of both kinds of ROS, written here from LCM logs. The bag writer
+// What the tests import: recordings of both kinds of ROS, written here. The bag writer
 // follows the published format 2.0 of ROS 1 bags, the MCAP one is @mcap/core's own.
 
+import { execFileSync } from "node:child_process";
 import { writeFileSync } from "node:fs";
 import { open } from "node:fs/promises";
 import { createRequire } from "node:module";
+import { fileURLToPath } from "node:url";
 import { McapWriter } from "@mcap/core";
 import { FileHandleWritable } from "@mcap/nodejs";
 
@@ -29,7 +31,7 @@ function definitionsOf(types, name) {
 
 const time = (ns) => ({ sec: Number(ns / 1_000_000_000n), nsec: Number(ns % 1_000_000_000n) });
 
-// ---- LCM to sensor_msgs, the reverse of lib/ros_to_lcm.mjs -----------------------------------------
+// ---- LCM to sensor_msgs, the reverse of lib/sensor_msgs -----------------------------------------
 
 const header = (message, frame_id) => ({ seq: 0, stamp: time(message.utime * 1000n), frame_id });
 
@@ -48,8 +50,11 @@ export function rawToRos(message, encoding) {
 
 // ---- Messages: {topic, type, logTimeNs, message} in order of time ----------------------------------
 
-/** As `ros2 bag record` writes them. `options` go to McapWriter (chunkSize, compressChunk, ...). */
-export async function writeMcap(path, messages, options = {}) {
+/**
+ * As `ros2 bag record` writes them. `options` go to McapWriter (chunkSize, compressChunk, ...); with `isKilled` the recorder
+ * does not come to write the end.
+ */
+export async function writeMcap(path, messages, { isKilled = false, ...options } = {}) {
   const file = await open(path, "w");
   const writer = new McapWriter({ writable: new FileHandleWritable(file), ...options });
   await writer.start({ profile: "ros2", library: "voqcal test" });
@@ -79,12 +84,28 @@ export async function writeMcap(path, messages, options = {}) {
       data: channel.writer.writeMessage(message),
     });
   }
-  await writer.end();
+  if (!isKilled) await writer.end();
   await file.close();
 }
 
-/** A bag of one chunk, as rosbag writes it: bag header, chunk, its index, connections, chunk info. */
-export function writeBag(path, messages) {
+/** A ROS 2 sqlite3 recording, by Python; `packs` what each message's bytes become. */
+export function writeDb3(path, messages, pack = (bytes) => bytes) {
+  const writers = new Map();
+  const parts = messages.map(({ topic, type, logTimeNs, message }) => {
+    if (!writers.has(topic)) writers.set(topic, new Ros2Writer(definitionsOf(ros2humble, type)));
+    const data = pack(Buffer.from(writers.get(topic).writeMessage(message)));
+    const names = Buffer.from(`${topic} ${type.replace("/", "/msg/")}`);
+    return Buffer.concat([u32(names.length), names, u64(logTimeNs), u32(data.length), data]);
+  });
+  const script = fileURLToPath(new URL("write_db3.py", import.meta.url));
+  execFileSync("python3", [script, path], { input: Buffer.concat(parts) });
+}
+
+/**
+ * A bag of one chunk, as rosbag writes it: bag header, chunk, its index, connections, chunk info; without what is behind
+ * the chunk's index if `hasIndex` is false, as a recorder that is killed leaves it.
+ */
+export function writeBag(path, messages, { hasIndex = true } = {}) {
   const connections = new Map();
   const chunk = [];
   let chunkBytes = 0;
@@ -104,10 +125,10 @@ export function writeBag(path, messages) {
     index.push({ logTimeNs, offset: chunkBytes });
     append(record({ op: u8(2), conn: u32(id), time: bagTime(logTimeNs) }, writer.writeMessage(message)));
   }
-  writeFileSync(path, Buffer.concat(bagRecords(chunk, chunkBytes, [...connections.values()], messages)));
+  writeFileSync(path, Buffer.concat(bagRecords(chunk, chunkBytes, [...connections.values()], messages, hasIndex)));
 }
 
-function bagRecords(chunk, chunkBytes, connections, messages) {
+function bagRecords(chunk, chunkBytes, connections, messages, hasIndex) {
   const magic = Buffer.from("#ROSBAG V2.0\n");
   const chunkPosition = magic.length + 4096;
   const chunkRecord = record(
@@ -135,10 +156,11 @@ function bagRecords(chunk, chunkBytes, connections, messages) {
   );
   const bagHeader = paddedHeader({
     op: u8(3),
-    index_pos: u64(chunkPosition + numBytes),
-    conn_count: u32(connections.length),
-    chunk_count: u32(1),
+    index_pos: u64(hasIndex ? chunkPosition + numBytes : 0),
+    conn_count: u32(hasIndex ? connections.length : 0),
+    chunk_count: u32(hasIndex ? 1 : 0),
   });
+  if (!hasIndex) return [magic, bagHeader, chunkRecord, ...indices];
   return [magic, bagHeader, chunkRecord, ...indices, ...connections.map((c) => c.record), info];
 }
 

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/lidar/point_cloud.hpp"
+
+namespace voqcal {
+
+/// Where a field stands among `names`, by any name that drivers and programs give it, in letters of
+/// either size: "intensity" is also reflectivity or i, "ring" channel or line, "time" t or
+/// timestamp. Nothing if it is not there.
+///
+/// @param field  "x", "y", "z", "intensity", "ring" or "time".
+std::optional<std::size_t> FindField(const std::vector<std::string>& names, std::string_view field);
+
+/// Gives each point its ring. Where no beam returned, drivers write NaN, -1 or whatever was there:
+/// not looked at. Anything but a whole number from 0 to 65535 elsewhere is no ring, and the cloud
+/// one without rings.
+///
+/// @param rings  as they were read, one for each point of the cloud.
+void SetRings(const std::vector<double>& rings, PointCloud* cloud);
+
+/// Gives each point its time. What the numbers count (seconds to nanoseconds) is told by their
+/// range, as sweeps last 4 ms to 2.5 s; numbers far from 0 are of some clock and counted from the
+/// first. The cloud has no times if they are none.
+///
+/// @param times  as they were read, one for each point of the cloud.
+void SetTimes(const std::vector<double>& times, PointCloud* cloud);
+
+}  // namespace voqcal

@@ -1,0 +1,177 @@
+// ROS 1 bags: by their index where they have one, else record by record (wiki.ros.org/Bags/Format/2.0).
+
+import { createRequire } from "node:module";
+import { loadDecompressHandlers } from "@mcap/support";
+import { FileWindow } from "./file_window.mjs";
+import { plainType, ros1Decoder } from "./message_decoders.mjs";
+
+const require = createRequire(import.meta.url);
+const { Bag } = require("@foxglove/rosbag");
+const { FileReader } = require("@foxglove/rosbag/node");
+
+export const BAG_MAGIC = Buffer.from("#ROSBAG V2.0\n");
+const OP = { MESSAGE: 2, CHUNK: 5, CONNECTION: 7 };
+
+const nanoseconds = ({ sec, nsec }) => BigInt(sec) * 1_000_000_000n + BigInt(nsec);
+
+/** Opens by the index; undefined where the recorder left none. */
+export async function openIndexedBag(path) {
+  const reader = new FileReader(path);
+  try {
+    const bag = new Bag(reader, { decompress: await loadDecompressHandlers(), parse: false });
+    await bag.open();
+    if (bag.chunkInfos.length > 0) return indexedBag(bag, reader);
+  } catch {
+    // The scan says what is wrong.
+  }
+  await reader.close();
+  return undefined;
+}
+
+function indexedBag(bag, reader) {
+  const connections = new Connections();
+  for (const [id, { topic, type, messageDefinition }] of bag.connections) {
+    connections.add({ id, topic, type, definition: messageDefinition });
+  }
+  for (const chunk of bag.chunkInfos) {
+    for (const { conn, count } of chunk.connections) connections.count(conn, count);
+  }
+  return {
+    topics: connections.topics,
+    startNs: nanoseconds(bag.startTime),
+    isIndexed: true,
+    async *messages(names) {
+      for await (const { connectionId, timestamp, data } of bag.messageIterator({ topics: names })) {
+        yield connections.message(connectionId, nanoseconds(timestamp), data);
+      }
+    },
+    close: () => reader.close(),
+  };
+}
+
+/** Reads what is there up to where the file ends or is damaged; a damaged chunk is left out. */
+export async function scanBag(path) {
+  const decompress = await loadDecompressHandlers();
+  const file = new FileWindow(path);
+  const connections = new Connections();
+  const part = {
+    topics: connections.topics,
+    startNs: undefined,
+    isIndexed: false,
+    remarks: [],
+    close: () => file.close(),
+  };
+  for (const { id, logTimeNs } of scannedMessages(file, decompress, connections, part.remarks)) {
+    connections.count(id, 1);
+    if (part.startNs === undefined || logTimeNs < part.startNs) part.startNs = logTimeNs;
+  }
+  part.messages = async function* messages(names) {
+    for (const { id, logTimeNs, data } of scannedMessages(file, decompress, connections, [])) {
+      if (names.includes(connections.topicOf(id))) yield connections.message(id, logTimeNs, data);
+    }
+  };
+  return part;
+}
+
+/** Connections by their number, and the topics that they make. */
+class Connections {
+  topics = new Map();
+  #connections = new Map();
+
+  add(connection) {
+    if (this.#connections.has(connection.id)) return;
+    this.#connections.set(connection.id, connection);
+    const { topic, type } = connection;
+    if (!this.topics.has(topic)) this.topics.set(topic, { type: plainType(type), count: 0 });
+  }
+
+  topicOf(id) {
+    return this.#connections.get(id)?.topic;
+  }
+
+  count(id, num) {
+    const topic = this.topics.get(this.topicOf(id));
+    if (topic) topic.count += num;
+  }
+
+  message(id, logTimeNs, data) {
+    const connection = this.#connections.get(id);
+    connection.decode ??= ros1Decoder(connection.definition);
+    return { topic: connection.topic, logTimeNs, data, decode: () => connection.decode(data) };
+  }
+}
+
+/** Every message in the order of the file, each chunk's by time. */
+function* scannedMessages(file, decompress, connections, remarks) {
+  for (let at = BAG_MAGIC.length; at < file.numBytes; ) {
+    const record = recordAt((from, length) => file.at(from, length), at);
+    if (record === undefined) {
+      remarks.push(`is cut off or damaged at byte ${at} of ${file.numBytes}: what is before it is read`);
+      const cut = recordAt((from, length) => file.at(from, Math.min(length, file.numBytes - from)), at);
+      if (cut?.op === OP.CHUNK) yield* inOrder(chunkMessages(cut, at, decompress, connections, []));
+      return;
+    }
+    if (record.op === OP.CHUNK) yield* inOrder(chunkMessages(record, at, decompress, connections, remarks));
+    else yield* take(record, connections);
+    at = record.end;
+  }
+}
+
+const inOrder = (messages) => [...messages].sort((a, b) => Number(a.logTimeNs - b.logTimeNs));
+
+function* take({ op, fields, data }, connections) {
+  if (op === OP.CONNECTION) {
+    const about = fieldsOf(data);
+    connections.add({
+      id: fields.conn.readUInt32LE(0),
+      topic: fields.topic.toString(),
+      type: about.type.toString(),
+      definition: about.message_definition.toString(),
+    });
+  }
+  if (op !== OP.MESSAGE || connections.topicOf(fields.conn.readUInt32LE(0)) === undefined) return;
+  const time = { sec: fields.time.readUInt32LE(0), nsec: fields.time.readUInt32LE(4) };
+  yield { id: fields.conn.readUInt32LE(0), logTimeNs: nanoseconds(time), data };
+}
+
+function* chunkMessages({ fields, data }, offset, decompress, connections, remarks) {
+  try {
+    const compression = fields.compression.toString();
+    const bytes = compression === "none" ? data : decompress[compression](data, fields.size.readUInt32LE(0));
+    const records = Buffer.from(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    const slice = (from, length) =>
+      from + length > records.length ? undefined : records.subarray(from, from + length);
+    for (let at = 0; at < records.length; ) {
+      const record = recordAt(slice, at);
+      if (record === undefined) throw new Error(`ends within a record, at its byte ${at}`);
+      yield* take(record, connections);
+      at = record.end;
+    }
+  } catch (error) {
+    remarks.push(`the chunk at byte ${offset} is damaged; what cannot be read of it is left out (${error.message})`);
+  }
+}
+
+/** Length u32 and header, length u32 and data; undefined where they are cut off or none. */
+function recordAt(bytesAt, at) {
+  const headBytes = bytesAt(at, 4)?.readUInt32LE(0);
+  if (headBytes === undefined) return undefined;
+  const fields = fieldsOf(bytesAt(at + 4, headBytes));
+  const dataBytes = bytesAt(at + 4 + headBytes, 4)?.readUInt32LE(0);
+  if (fields?.op?.length !== 1 || dataBytes === undefined) return undefined;
+  const data = bytesAt(at + 8 + headBytes, dataBytes);
+  return data && { op: fields.op[0], fields, data, end: at + 8 + headBytes + dataBytes };
+}
+
+/** Fields: length u32, then "name=value"; undefined if they are none. */
+function fieldsOf(bytes) {
+  const fields = {};
+  for (let at = 0; bytes && at < bytes.length; ) {
+    const end = at + 4 <= bytes.length ? at + 4 + bytes.readUInt32LE(at) : Infinity;
+    const equals = bytes.indexOf("=", at + 4);
+    if (end > bytes.length || equals < 0 || equals >= end) return undefined;
+    fields[bytes.toString("latin1", at + 4, equals)] = bytes.subarray(equals + 1, end);
+    at = end;
+  }
+  return bytes && fields;
+}

@@ -1,0 +1,189 @@
+// One session, recorded in every way: the same messages, byte for byte.
+
+import assert from "node:assert/strict";
+import { execFileSync, spawnSync } from "node:child_process";
+import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { DamagedIndex } from "../lib/recordings/merged.mjs";
+import { openRecording } from "../lib/recordings/open.mjs";
+import { writeBag, writeDb3, writeMcap } from "./recording_writers.mjs";
+
+const folder = mkdtempSync(join(tmpdir(), "voqcal-recordings-"));
+after(() => rmSync(folder, { recursive: true }));
+const path = (name) => join(folder, name);
+const program = fileURLToPath(new URL("../../import_ros", import.meta.url));
+
+const START = 1_600_000_000_000_000_000n;
+const NUM = 12;
+const stamp = (ns) => ({ sec: Number(ns / 1_000_000_000n), nsec: Number(ns % 1_000_000_000n) });
+const cloud = (ns, i) => ({
+  header: { seq: 0, stamp: stamp(ns), frame_id: "velodyne" },
+  height: 1,
+  width: 3,
+  fields: ["x", "y", "z"].map((name, axis) => ({ name, offset: 4 * axis, datatype: 7, count: 1 })),
+  is_bigendian: false,
+  point_step: 12,
+  row_step: 36,
+  data: Uint8Array.from({ length: 36 }, (_, k) => i + k),
+  is_dense: true,
+});
+const image = (ns, i) => ({
+  header: { seq: 0, stamp: stamp(ns), frame_id: "camera" },
+  width: 4,
+  height: 2,
+  encoding: "mono8",
+  is_bigendian: 0,
+  step: 4,
+  data: Uint8Array.from({ length: 8 }, (_, k) => 3 * i + k),
+});
+const messages = Array.from({ length: NUM }, (_, i) => START + BigInt(i) * 100_000_000n).flatMap((ns, i) => [
+  { topic: "/points", type: "sensor_msgs/PointCloud2", logTimeNs: ns, message: cloud(ns, i) },
+  { topic: "/camera", type: "sensor_msgs/Image", logTimeNs: ns + 5n, message: image(ns, i) },
+]);
+const first = messages.slice(0, 10);
+const rest = messages.slice(10);
+
+async function read(paths, isScanning = false) {
+  const recording = await openRecording(paths, folder, isScanning);
+  try {
+    const found = [];
+    for await (const { topic, logTimeNs, decode } of recording.messages(["/points", "/camera"])) {
+      found.push({ topic, logTimeNs, data: [...decode().data] });
+    }
+    return { found, remarks: recording.remarks, topics: recording.topics };
+  } finally {
+    await recording.close();
+  }
+}
+
+const expected = messages.map(({ topic, logTimeNs, message }) => ({ topic, logTimeNs, data: [...message.data] }));
+const zstd = (bytes) => execFileSync("zstd", ["-qc", `--stream-size=${bytes.length}`], { input: bytes });
+const inFolder = async (name, write) => {
+  mkdirSync(path(name));
+  await write(first, (file) => join(path(name), file), 0);
+  await write(rest, (file) => join(path(name), file), 1);
+};
+
+const KINDS = {
+  "a bag": () => writeBag(path("a.bag"), messages),
+  "a bag whose recorder was killed": () => writeBag(path("b.bag.active"), messages, { hasIndex: false }),
+  "bags of a split recording": () =>
+    inFolder("bags", (part, file, i) => writeBag(file(`x_2020_${i}.bag`), part)),
+  "MCAP": () => writeMcap(path("c.mcap"), messages),
+  "MCAP of many chunks": () => writeMcap(path("d.mcap"), messages, { chunkSize: 500 }),
+  "MCAP without chunks (fastwrite)": () => writeMcap(path("e.mcap"), messages, { useChunks: false }),
+  "MCAP without an index": () => writeMcap(path("f.mcap"), messages, { useMessageIndex: false, useChunkIndex: false }),
+  "MCAP whose summary has no channels": () =>
+    writeMcap(path("k.mcap"), messages, { repeatSchemas: false, repeatChannels: false }),
+  "MCAP without statistics": () => writeMcap(path("g.mcap"), messages, { useStatistics: false }),
+  "MCAP of a split recording": () =>
+    inFolder("mcaps", async (part, file, i) => {
+      writeFileSync(file("metadata.yaml"), "");
+      writeFileSync(file("._x_0.mcap"), "of another system");
+      await writeMcap(file(`x_${i}.mcap`), part);
+    }),
+  "MCAP packed by file": async () => {
+    await writeMcap(path("h.mcap"), messages);
+    execFileSync("zstd", ["-q", "--rm", path("h.mcap"), "-o", path("h.mcap.zstd")]);
+  },
+  "sqlite3": () => writeDb3(path("i.db3"), messages),
+  "sqlite3 of a split recording": () =>
+    inFolder("db3s", (part, file, i) => writeDb3(file(`x_${i}.db3`), part)),
+  "sqlite3 packed by message": () => writeDb3(path("j.db3"), messages, zstd),
+};
+const hasPython = spawnSync("python3", ["--version"]).status === 0;
+const hasZstd = spawnSync("zstd", ["--version"]).status === 0;
+const lacks = (kind) => (kind.includes("sqlite3") && !hasPython) || (kind.includes("packed") && !hasZstd);
+
+for (const [kind, write] of Object.entries(KINDS)) {
+  test(`${kind}: the very messages`, { skip: lacks(kind) }, async () => {
+    const before = new Set(readdirSync(folder));
+    await write();
+    const [name] = readdirSync(folder).filter((file) => !before.has(file));
+    const { found, topics } = await read([path(name)]);
+    assert.deepEqual(found, expected);
+    assert.equal(topics.get("/points").type, "sensor_msgs/PointCloud2");
+    if (!kind.includes("statistics")) assert.equal(topics.get("/camera").count, NUM);
+    assert.ok(!readdirSync(folder).some((file) => file.startsWith(".unpacked")));
+  });
+}
+
+test("files given in any order are one recording; so are those of one sensor each", async () => {
+  await writeMcap(path("one.mcap"), rest);
+  await writeMcap(path("two.mcap"), first);
+  assert.deepEqual((await read([path("one.mcap"), path("two.mcap")])).found, expected);
+  writeBag(path("lidar.bag"), messages.filter(({ topic }) => topic === "/points"));
+  writeBag(path("camera.bag"), messages.filter(({ topic }) => topic === "/camera"));
+  assert.deepEqual((await read([path("lidar.bag"), path("camera.bag")])).found, expected);
+});
+
+test("a recorder that was killed: what came to the disk", async () => {
+  await writeMcap(path("killed.mcap"), messages, { isKilled: true, chunkSize: 300 });
+  const { found, remarks } = await read([path("killed.mcap")]);
+  assert.ok(found.length >= NUM);
+  assert.deepEqual(found, expected.slice(0, found.length));
+  assert.match(remarks.join(), /killed.mcap: was not closed by its recorder/);
+});
+
+test("a damaged chunk is left out and named, once the index led to it", async () => {
+  await writeMcap(path("damaged.mcap"), messages, { chunkSize: 300 });
+  const bytes = readFileSync(path("damaged.mcap"));
+  bytes.fill(0x55, bytes.indexOf("velodyne", bytes.length / 4, "latin1"), bytes.indexOf("velodyne", bytes.length / 4, "latin1") + 8);
+  writeFileSync(path("damaged.mcap"), bytes);
+  await assert.rejects(read([path("damaged.mcap")]), DamagedIndex);
+  const { found, remarks } = await read([path("damaged.mcap")], true);
+  assert.ok(found.length > NUM && found.length < 2 * NUM);
+  assert.match(remarks.join(), /the chunk at byte \d+ is damaged and left out/);
+});
+
+test("a damaged recording is imported but for what is damaged", () => {
+  const done = spawnSync(program, [path("damaged.mcap"), "--out", path("out.lcm")], { encoding: "utf8" });
+  assert.equal(done.status, 0, done.stderr);
+  assert.match(done.stdout, /damaged.mcap: the chunk at byte \d+ is damaged[^]*LIDAR_POINTS: \d+ messages/);
+});
+
+test("a sqlite3 recording that is cut off: what can be read, or why not", { skip: !hasPython }, async () => {
+  writeDb3(path("cut.db3"), Array.from({ length: 40 }, () => messages).flat());
+  const bytes = readFileSync(path("cut.db3"));
+  for (const share of [0.2, 0.6, 0.95]) {
+    writeFileSync(path("cut.db3"), bytes.subarray(0, Math.floor(share * bytes.length)));
+    try {
+      const { found, remarks } = await read([path("cut.db3")]);
+      assert.ok(found.length > 0);
+      assert.match(remarks.join(), /cut off or damaged/);
+    } catch (error) {
+      assert.match(error.message, /cut.db3/);
+    }
+  }
+});
+
+test("bag, MCAP and sqlite3 give the same log, byte for byte", { skip: !hasPython }, () => {
+  const logs = ["a.bag", "c.mcap", "e.mcap", "mcaps", "i.db3"].map((name) => {
+    execFileSync(program, [path(name), "--out", path(`${name}.lcm`)]);
+    return readFileSync(path(`${name}.lcm`));
+  });
+  for (const log of logs) assert.deepEqual(log, logs[0]);
+});
+
+test("a cut within a chunk: what of it came to the disk", async () => {
+  for (const name of ["a.bag", "c.mcap"]) {
+    const whole = readFileSync(path(name));
+    writeFileSync(path("half"), whole.subarray(0, whole.lastIndexOf("velodyne", -1, "latin1")));
+    const { found, remarks } = await read([path("half")]);
+    assert.deepEqual(found, expected.slice(0, 2 * NUM - 2));
+    assert.match(remarks.join(), /half: is cut off or damaged at byte/);
+  }
+});
+
+test("a large sqlite3 recording, of which the beginning is looked at first, comes to its end", { skip: !hasPython }, () => {
+  const large = { ...image(START, 0), width: 100_000, height: 1, step: 100_000, data: new Uint8Array(100_000) };
+  const isImage = ({ topic }) => topic === "/camera";
+  const grown = [...messages, ...messages].map((message) => (isImage(message) ? { ...message, message: large } : message));
+  writeDb3(path("large.db3"), grown);
+  const done = spawnSync(program, [path("large.db3"), "--out", path("large.lcm")], { encoding: "utf8", timeout: 60_000 });
+  assert.equal(done.status, 0, done.stderr);
+  assert.match(done.stdout, /CAMERA_IMAGE: 24 messages/);
+});

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <set>
+#include <variant>
 
+#include "core/camera_detection/calibration_target.hpp"
 #include "files/transform_yaml.hpp"
 #include "rig/driver_sections.hpp"
 #include "rig/lcm_url.hpp"
@@ -60,25 +62,30 @@ void ReadChannels(YamlSection* top, const std::string& prefix, Channels* channel
   section.RefuseUnknownKeys();
 }
 
+void ReadTargetKey(const TargetKey& key, YamlSection* section, BoardSpec* board) {
+  const auto read = [&](auto field) {
+    if (key.is_required) return section->ReadRequired(key.name, &(board->*field));
+    section->Read(key.name, &(board->*field));
+  };
+  std::visit(read, key.field);
+  if (const auto* count = std::get_if<int BoardSpec::*>(&key.field)) board->*(*count) *= key.times;
+}
+
 void ReadBoard(YamlSection* top, BoardSpec* board) {
   YamlSection section = top->RequiredSection("board");
   if (!top->Has("board")) return;
   section.ReadRequired("width_m", &board->width_m);
   section.ReadRequired("height_m", &board->height_m);
-  section.ReadRequired("square_m", &board->square_m);
-  section.ReadRequired("num_corners_x", &board->num_corners_x);
-  section.ReadRequired("num_corners_y", &board->num_corners_y);
   section.Read("pattern_offset_x_m", &board->pattern_offset_x_m);
   section.Read("pattern_offset_y_m", &board->pattern_offset_y_m);
-  std::string pattern = "chessboard";
-  section.Read("pattern", &pattern);
-  if (pattern != "chessboard" && pattern != "charuco") {
-    section.AddError("pattern", "must be chessboard or charuco");
+  section.Read("target_type", &board->pattern);  // as Kalibr calls it
+  section.Read("pattern", &board->pattern);
+  const CalibrationTarget* target = FindCalibrationTarget(board->pattern);
+  if (target == nullptr) {
+    return section.AddError("pattern", "must be one of " + CalibrationTargetNames());
   }
-  board->pattern = pattern == "charuco" ? BoardPattern::kCharuco : BoardPattern::kChessboard;
-  section.Read("dictionary", &board->dictionary);
-  section.Read("marker_m", &board->marker_m);
-  if (section.IsComplete()) section.AddProblems(board->Problems());
+  for (const TargetKey& key : target->keys) ReadTargetKey(key, &section, board);
+  if (section.IsComplete()) section.AddProblems(BoardProblems(*board));
   section.RefuseUnknownKeys();
 }
 

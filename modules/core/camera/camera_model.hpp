@@ -36,9 +36,13 @@ struct CameraModel {
   template <typename T>
   Eigen::Matrix<T, 2, 1> Project(const Eigen::Matrix<T, 3, 1>& point_camera_m) const;
 
-  /// True where Project is defined: ahead of the camera (z > 0), and on the branch where the radial
-  /// polynomial still grows with the angle from the axis.
+  /// True where the lens brings the point's ray to a pixel: within the angles that it takes (below
+  /// 90 degrees off the axis, equidistant below 180), and on the branch where the radial polynomial
+  /// still grows with the angle.
   bool IsInFront(const Eigen::Vector3d& point_camera_m) const;
+
+  /// True where Project is defined and smooth: cheap, and says nothing of the branch.
+  bool IsProjectable(const Eigen::Vector3d& point_camera_m) const;
 
   /// True if the pixel lies in the image.
   bool Contains(const Eigen::Vector2d& pixel_px) const;

@@ -8,9 +8,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "core/camera_detection/calibration_target.hpp"
 #include "core/camera_detection/camera_board_view.hpp"
-#include "core/camera_detection/charuco_corners.hpp"
-#include "core/camera_detection/chessboard_corners.hpp"
 #include "core/camera_detection/planar_pose.hpp"
 #include "core/problems.hpp"
 
@@ -37,14 +36,6 @@ cv::Mat Grey(const cv::Mat& image) {
   cv::Mat grey;
   cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
   return grey;
-}
-
-Expected<std::vector<Eigen::Vector2d>, CameraBoardMiss> FindCorners(const cv::Mat& grey,
-                                                                    const BoardSpec& board) {
-  if (board.pattern == BoardPattern::kCharuco) return FindCharucoCorners(grey, board);
-  const auto corners_px = FindChessboardCorners(grey, board);
-  if (!corners_px) return ExplainPart(grey, board, corners_px.error());
-  return *corners_px;
 }
 
 std::optional<PlanarPose> FitSeenCorners(const CameraModel& camera,
@@ -154,12 +145,12 @@ Expected<CameraBoard, CameraBoardMiss> DetectCameraBoard(const cv::Mat& image,
                                                          const BoardSpec& board,
                                                          const CameraBoardOptions& options) {
   RequireUsable("DetectCameraBoard: camera", camera.Problems());
-  RequireUsable("DetectCameraBoard: board", board.Problems());
+  RequireUsable("DetectCameraBoard: board", BoardProblems(board));
   RequireUsable("DetectCameraBoard: options", options.Problems());
   RequireImage(image, camera);
 
   const cv::Mat grey = Grey(image);
-  const auto corners_px = FindCorners(grey, board);
+  const auto corners_px = TargetOf(board).find_corners(grey, board);
   if (!corners_px) return corners_px.error();
   const auto fit = FitSeenCorners(camera, board, *corners_px);
   if (!fit) return CameraBoardMiss{CameraBoardFault::kNoPose, ""};

@@ -32,7 +32,7 @@ struct CameraBoardOptions {
 
 /// Finds the board in one image and its pose by all corners seen, with the true lens model.
 ///
-/// Of a chessboard every corner must be seen; of a ChArUco board a part is enough.
+/// Of a chessboard every corner must be seen; of a board with markers a part is enough.
 ///
 /// Of the two half-turns that a chessboard may not tell apart, the one is taken whose board y axis
 /// points up in the image (or, if horizontal, whose x axis does), so that a session is consistent.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/camera_detection/calibration_target.hpp"
 #include "core/median.hpp"
 
 namespace voqcal {
@@ -24,12 +25,6 @@ std::optional<double> GreyAt(const cv::Mat& grey, const Eigen::Vector2d& at_px) 
          down * ((1 - right) * below[0] + right * below[1]);
 }
 
-// How far from an edge or corner the squares beside it are of one shade: markers leave a rim.
-double ReachSquares(const BoardSpec& board) {
-  if (board.pattern == BoardPattern::kChessboard) return 0.4;
-  return 0.4 * (1 - board.marker_m / board.square_m);
-}
-
 // One image of the board, and where its parts are in it.
 class Viewer {
  public:
@@ -44,7 +39,7 @@ class Viewer {
         T_camera_board_(T_camera_board),
         corners_px_(corners_px),
         corners_board_m_(board.InnerCornersBoardM()),
-        reach_squares_(ReachSquares(board)) {}
+        reach_squares_(TargetOf(board).reach(board)) {}
 
   CameraBoardView Measure() const {
     CameraBoardView view;

@@ -29,21 +29,33 @@ cv::Ptr<cv::aruco::CharucoBoard> BoardOf(const CharucoLayout& layout) {
 
 }  // namespace
 
-CharucoMarkers DetectCharucoMarkers(const cv::Mat& grey, const CharucoLayout& layout) {
-  CharucoMarkers found;
+Markers DetectMarkers(const cv::Mat& grey, int dictionary, int border_cells) {
+  Markers found;
   std::vector<std::vector<cv::Point2f>> rejected;
+  const auto parameters = cv::aruco::DetectorParameters::create();
+  parameters->markerBorderBits = border_cells;
   cv::aruco::detectMarkers(grey,
-                           cv::aruco::getPredefinedDictionary(layout.dictionary),
+                           cv::aruco::getPredefinedDictionary(dictionary),
                            found.corners_px,
                            found.ids,
-                           cv::aruco::DetectorParameters::create(),
+                           parameters,
                            rejected);
   found.num_rejected = static_cast<int>(rejected.size());
   return found;
 }
 
+cv::Mat DrawMarker(int dictionary, int id, int num_cells_with_border, int border_cells) {
+  cv::Mat image;
+  cv::aruco::drawMarker(cv::aruco::getPredefinedDictionary(dictionary),
+                        id,
+                        num_cells_with_border,
+                        image,
+                        border_cells);
+  return image;
+}
+
 CharucoCorners CornersBesideMarkers(const cv::Mat& grey,
-                                    const CharucoMarkers& markers,
+                                    const Markers& markers,
                                     const CharucoLayout& layout) {
   CharucoCorners found;
   cv::aruco::interpolateCornersCharuco(markers.corners_px,
@@ -77,17 +89,30 @@ cv::aruco::CharucoBoard BoardOf(const CharucoLayout& layout) {
 
 }  // namespace
 
-CharucoMarkers DetectCharucoMarkers(const cv::Mat& grey, const CharucoLayout& layout) {
-  CharucoMarkers found;
+Markers DetectMarkers(const cv::Mat& grey, int dictionary, int border_cells) {
+  Markers found;
   std::vector<std::vector<cv::Point2f>> rejected;
-  const cv::aruco::ArucoDetector detector(cv::aruco::getPredefinedDictionary(layout.dictionary));
+  cv::aruco::DetectorParameters parameters;
+  parameters.markerBorderBits = border_cells;
+  const cv::aruco::ArucoDetector detector(cv::aruco::getPredefinedDictionary(dictionary),
+                                          parameters);
   detector.detectMarkers(grey, found.corners_px, found.ids, rejected);
   found.num_rejected = static_cast<int>(rejected.size());
   return found;
 }
 
+cv::Mat DrawMarker(int dictionary, int id, int num_cells_with_border, int border_cells) {
+  cv::Mat image;
+  cv::aruco::generateImageMarker(cv::aruco::getPredefinedDictionary(dictionary),
+                                 id,
+                                 num_cells_with_border,
+                                 image,
+                                 border_cells);
+  return image;
+}
+
 CharucoCorners CornersBesideMarkers(const cv::Mat& grey,
-                                    const CharucoMarkers& markers,
+                                    const Markers& markers,
                                     const CharucoLayout& layout) {
   cv::aruco::CharucoParameters parameters;
   parameters.minMarkers = kMinMarkers;

@@ -17,9 +17,9 @@ struct CharucoLayout {
   int dictionary = 0;  ///< OpenCV's number of it.
 };
 
-/// Markers of the board's dictionary in one image.
-struct CharucoMarkers {
-  std::vector<std::vector<cv::Point2f>> corners_px;  ///< Four each.
+/// Markers of a dictionary in one image.
+struct Markers {
+  std::vector<std::vector<cv::Point2f>> corners_px;  ///< Four each, from its top left clockwise.
   std::vector<int> ids;
   int num_rejected = 0;  ///< Dark squares that are no marker.
 };
@@ -30,11 +30,16 @@ struct CharucoCorners {
   std::vector<int> ids;  ///< Row by row, from the top left of the print.
 };
 
-CharucoMarkers DetectCharucoMarkers(const cv::Mat& grey, const CharucoLayout& layout);
+/// @param dictionary    OpenCV's number of it.
+/// @param border_cells  how wide the dark border is.
+Markers DetectMarkers(const cv::Mat& grey, int dictionary, int border_cells = 1);
 
-/// @param markers  As DetectCharucoMarkers found them in `grey`; at least one.
+/// A marker as it is printed, upright, without margin: 8-bit, 1 channel, a pixel to a cell.
+cv::Mat DrawMarker(int dictionary, int id, int num_cells_with_border, int border_cells);
+
+/// @param markers  As DetectMarkers found them in `grey`; at least one.
 CharucoCorners CornersBesideMarkers(const cv::Mat& grey,
-                                    const CharucoMarkers& markers,
+                                    const Markers& markers,
                                     const CharucoLayout& layout);
 
 /// The pattern as it is printed, without margin: 8-bit, 1 channel.

@@ -42,18 +42,38 @@ struct ReprojectionErrors {
 using ErrorFunction =
     ceres::TinySolverAutoDiffFunction<ReprojectionErrors, Eigen::Dynamic, 6, double>;
 
+// A rotation that brings all rays before the image plane: none if they are, else their middle goes
+// to the axis (a fisheye sees boards beside itself and behind).
+Eigen::Matrix3d FacingTurn(const std::vector<Eigen::Vector3d>& rays_camera) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  bool is_ahead = true;
+  for (const Eigen::Vector3d& ray : rays_camera) {
+    sum += ray;
+    is_ahead = is_ahead && ray.z() > 0;
+  }
+  if (is_ahead) return Eigen::Matrix3d::Identity();
+  return Eigen::Quaterniond::FromTwoVectors(sum, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
 // IPPE (Collins and Bartoli 2014) on undistorted rays: the two poses that a plane in perspective
 // allows, better first. Empty where a pixel has no ray or OpenCV finds the points degenerate.
 std::vector<Eigen::Isometry3d> StartPoses(const CameraModel& camera,
                                           const std::vector<Eigen::Vector3d>& points_board_m,
                                           const std::vector<Eigen::Vector2d>& pixels_px) {
+  std::vector<Eigen::Vector3d> rays_camera;
+  for (const Eigen::Vector2d& pixel_px : pixels_px) {
+    const auto ray = camera.Unproject(pixel_px);
+    if (!ray) return {};
+    rays_camera.push_back(*ray);
+  }
+  const Eigen::Matrix3d R_facing_camera = FacingTurn(rays_camera);
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> rays;
   for (std::size_t i = 0; i < pixels_px.size(); ++i) {
-    const auto ray = camera.Unproject(pixels_px[i]);
-    if (!ray || ray->z() <= 0) return {};
+    const Eigen::Vector3d ray = R_facing_camera * rays_camera[i];
+    if (ray.z() <= 0) return {};
     points.emplace_back(points_board_m[i].x(), points_board_m[i].y(), points_board_m[i].z());
-    rays.emplace_back(ray->x() / ray->z(), ray->y() / ray->z());
+    rays.emplace_back(ray.x() / ray.z(), ray.y() / ray.z());
   }
   std::vector<cv::Vec3d> rotations;
   std::vector<cv::Vec3d> translations;
@@ -74,7 +94,7 @@ std::vector<Eigen::Isometry3d> StartPoses(const CameraModel& camera,
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = ExpSO3({rotations[i][0], rotations[i][1], rotations[i][2]});
     T.translation() << translations[i][0], translations[i][1], translations[i][2];
-    if (T.matrix().allFinite()) poses.push_back(T);
+    if (T.matrix().allFinite()) poses.push_back(R_facing_camera.transpose() * T);
   }
   return poses;
 }

@@ -19,7 +19,7 @@ bool PointReprojectionCost::Evaluate(const double* const* parameters,
                                      double** jacobians) const {
   const LeftPerturbation at(T_camera_lidar_start_, Eigen::Map<const Vector6d>(parameters[0]));
   const Eigen::Vector3d point_camera_m = at.T_camera_lidar() * point_lidar_m_;
-  if (!(point_camera_m.z() > 0.0)) return false;  // behind the camera: Ceres rejects the step
+  if (!camera_.IsProjectable(point_camera_m)) return false;  // Ceres rejects the step
   Eigen::Map<Eigen::Vector2d> r(residual);
   if (jacobians == nullptr || jacobians[0] == nullptr) {
     r = camera_.Project(point_camera_m) - point_px_;

@@ -47,7 +47,7 @@ bool SetCost::Evaluate(const SetPose& pose,
                        Jacobian* J) const {
   const Eigen::Vector3d normal = at.T_camera_lidar().linear() * pose.normal_lidar;
   const Eigen::Vector3d centre_m = at.T_camera_lidar() * pose.centre_lidar_m;
-  if (!(centre_m.z() > 0.0)) return false;
+  if (!camera.IsProjectable(centre_m)) return false;
   Matrix23d J_px_centre;
   const Eigen::Vector2d centre_px =
       ProjectWithJacobian(camera, centre_m, J != nullptr ? &J_px_centre : nullptr);

@@ -111,7 +111,8 @@ bool LikelihoodSearch::IsPhysical() const {
     const Eigen::Vector3d centre_m = T_lidar_board.translation();
     if (!(centre_m.dot(poses_[i].outline.T_lidar_board.translation()) > 0.0)) return false;
     if (!(centre_m.dot(T_lidar_board.linear().col(2)) < 0.0)) return false;
-    if (!(state_.T_camera_board[i].translation().z() > 0.0)) return false;
+    const Eigen::Vector3d centre_camera_m = state_.T_camera_board[i].translation();
+    if (!(centre_camera_m.dot(poses_[i].T_camera_board.translation()) > 0.0)) return false;
   }
   return state_.faults_m.allFinite();
 }

@@ -3,51 +3,48 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/camera_detection/calibration_target.hpp"
+
 namespace voqcal {
 namespace {
 
-// Cells are numbered row by row; a row has two more on each side than there are squares: the margin
-// and the outside.
+// Cells are numbered row by row; a row has two more on each side than are printed: the margin and
+// the outside.
 constexpr int kSides = 2;
 
-int CellAlong(double from_begin_m, double square_m, int num_squares, bool is_below, bool is_above) {
-  if (is_below) return 0;
-  if (is_above) return num_squares + 2 * kSides - 1;
-  const auto square = static_cast<int>(std::floor(from_begin_m / square_m));
-  return kSides + std::clamp(square, -1, num_squares);
+int CellAlong(double at_m, const std::vector<double>& lines_m, double half_size_m) {
+  const auto num_lines = static_cast<int>(lines_m.size());
+  if (at_m < -half_size_m) return 0;
+  if (at_m > half_size_m) return num_lines - 2 + 2 * kSides;
+  const auto above = std::upper_bound(lines_m.begin(), lines_m.end(), at_m);
+  return kSides - 1 + static_cast<int>(above - lines_m.begin());
 }
 
 }  // namespace
 
 BoardFace::BoardFace(const BoardSpec& board)
-    : num_x_(board.num_corners_x + 1),
-      num_y_(board.num_corners_y + 1),
-      square_m_(board.square_m),
-      left_m_(board.pattern_offset_x_m - num_x_ * board.square_m / 2),
-      bottom_m_(board.pattern_offset_y_m - num_y_ * board.square_m / 2),
+    : printed_(TargetOf(board).print(board)),
       half_width_m_(board.width_m / 2),
       half_height_m_(board.height_m / 2) {}
 
+int BoardFace::NumAlongX() const { return printed_.NumCellsX() + 2 * kSides; }
+
 int BoardFace::CellAt(double x_board_m, double y_board_m) const {
-  const int i = CellAlong(
-      x_board_m - left_m_, square_m_, num_x_, x_board_m<-half_width_m_, x_board_m> half_width_m_);
-  const int j = CellAlong(y_board_m - bottom_m_,
-                          square_m_,
-                          num_y_,
-                          y_board_m<-half_height_m_, y_board_m> half_height_m_);
-  return j * (num_x_ + 2 * kSides) + i;
+  return CellAlong(y_board_m, printed_.y_lines_m, half_height_m_) * NumAlongX() +
+         CellAlong(x_board_m, printed_.x_lines_m, half_width_m_);
 }
 
 bool BoardFace::IsOutside(int cell) const {
-  const int i = cell % (num_x_ + 2 * kSides);
-  const int j = cell / (num_x_ + 2 * kSides);
-  return i == 0 || j == 0 || i == num_x_ + 2 * kSides - 1 || j == num_y_ + 2 * kSides - 1;
+  const int i = cell % NumAlongX();
+  const int j = cell / NumAlongX();
+  return i == 0 || j == 0 || i == NumAlongX() - 1 || j == printed_.NumCellsY() + 2 * kSides - 1;
 }
 
 bool BoardFace::IsDark(int cell) const {
-  const int i = cell % (num_x_ + 2 * kSides) - kSides;
-  const int j = cell / (num_x_ + 2 * kSides) - kSides;
-  return i >= 0 && j >= 0 && i < num_x_ && j < num_y_ && (i + j) % 2 == 0;
+  const int i = cell % NumAlongX() - kSides;
+  const int j = cell / NumAlongX() - kSides;
+  return i >= 0 && j >= 0 && i < printed_.NumCellsX() && j < printed_.NumCellsY() &&
+         printed_.is_dark[j * printed_.NumCellsX() + i];
 }
 
 std::array<Tube, 5> StandTubes(const Eigen::Isometry3d& T_lidar_board,

@@ -6,13 +6,13 @@
 #include <Eigen/Geometry>
 
 #include "core/board/board_spec.hpp"
+#include "core/board/printed_pattern.hpp"
 #include "core/simulation/props.hpp"
 
 namespace voqcal {
 
-/// The board's printed face, cut by the grid lines of its chessboard into rectangular cells, each
-/// of one shade. Cells outside the chessboard are its white margin; beyond the outline there is
-/// nothing.
+/// The board's printed face in rectangular cells, each of one shade. Cells around what is printed
+/// are its white margin; beyond the outline there is nothing.
 class BoardFace {
  public:
   explicit BoardFace(const BoardSpec& board);
@@ -28,11 +28,9 @@ class BoardFace {
   static constexpr float kBrightAlbedo = 0.80F;
 
  private:
-  int num_x_;  ///< Squares along board x.
-  int num_y_;
-  double square_m_;
-  double left_m_;  ///< Where the chessboard begins.
-  double bottom_m_;
+  int NumAlongX() const;  ///< Cells of a row, margin and outside included.
+
+  PrintedPattern printed_;
   double half_width_m_;
   double half_height_m_;
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/camera_detection/calibration_target.hpp"
 #include "core/problems.hpp"
 #include "core/simulation/board_script.hpp"
 #include "core/simulation/camera_simulator.hpp"
@@ -26,7 +27,7 @@ const SimulationOptions& Checked(const SimulationOptions& options,
                                  const BoardSpec& board,
                                  const CameraModel& camera) {
   RequireNone("simulation", options.Problems());
-  RequireNone("board", board.Problems());
+  RequireNone("board", BoardProblems(board));
   RequireNone("camera", camera.Problems());
   return options;
 }

@@ -1,5 +1,6 @@
 #include "core/sampling/sample_picker.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -77,6 +78,46 @@ TEST(SamplePicker, AcceptsAStillBoardOnce) {
   EXPECT_EQ(decisions[2].accepted->utime, 0);
   // What all frames share does not average out: three frames claim no more than one.
   EXPECT_NEAR(decisions[2].accepted->lidar.pose.covariance(0, 0), 1.0, 1e-12);
+}
+
+const Eigen::Vector2d kUnseenPx = Eigen::Vector2d::Constant(std::nan(""));
+
+// Three frames of a board that the camera sees move, while the lidar does not.
+std::vector<std::string> OutcomesOfCorners(
+    const std::vector<std::vector<Eigen::Vector2d>>& corners_px_of_frames) {
+  SamplePicker picker(Board(), {});
+  std::vector<PickerDecision> decisions;
+  std::int64_t frame = 0;
+  for (const auto& corners_px : corners_px_of_frames) {
+    CameraSighting camera = Camera(frame, 0.5);
+    camera.board->corners_px = corners_px;
+    Append(picker.Add(Lidar(frame++, 0.5)), &decisions);
+    Append(picker.Add(camera), &decisions);
+  }
+  Append(picker.Flush(), &decisions);
+  return Outcomes(decisions);
+}
+
+TEST(SamplePicker, SeesAPartlySeenBoardMove) {
+  EXPECT_THAT(
+      OutcomesOfCorners({{{10, 10}, {60, 10}, kUnseenPx, kUnseenPx},
+                         {{20, 10}, {70, 10}, kUnseenPx, kUnseenPx},
+                         {{30, 10}, {80, 10}, kUnseenPx, kUnseenPx}}),
+      testing::ElementsAre("not yet still for long enough", "board is moving", "board is moving"));
+  // No corner of the one is a corner of the other: nothing says that it rests.
+  EXPECT_THAT(
+      OutcomesOfCorners({{{10, 10}, {60, 10}, kUnseenPx, kUnseenPx},
+                         {kUnseenPx, kUnseenPx, {60, 90}, {10, 90}},
+                         {{10, 10}, {60, 10}, kUnseenPx, kUnseenPx}}),
+      testing::ElementsAre("not yet still for long enough", "board is moving", "board is moving"));
+}
+
+TEST(SamplePicker, TakesAPartlySeenBoardThatRests) {
+  EXPECT_THAT(OutcomesOfCorners({{{10, 10}, {60, 10}, kUnseenPx, {10, 90}},
+                                 {{10, 10}, {60, 10}, kUnseenPx, kUnseenPx},
+                                 {{10, 10}, kUnseenPx, {60, 90}, {10, 90}}}),
+              testing::ElementsAre(
+                  "not yet still for long enough", "not yet still for long enough", "accepted"));
 }
 
 TEST(SamplePicker, AnswersTheSameWhateverTheArrivalOrderOfTheStreams) {

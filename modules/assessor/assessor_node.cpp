@@ -70,7 +70,10 @@ bool AssessorNode::Step() {
   if (!samples_ || !averaged_ || !refined_) return false;
   if (!IsMadeFrom(*samples_, *averaged_) || !IsMadeFrom(*samples_, *refined_)) return false;
   if (assessment_ && IsMadeFrom(*samples_, *assessment_)) return false;
-  Assess();
+  if (!CanRead([this] { Assess(); })) {
+    samples_.reset();
+    return false;
+  }
   Count(problem().empty() ? "assessments" : "without a result");
   Republish();
   return false;

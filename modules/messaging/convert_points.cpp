@@ -7,9 +7,10 @@
 #include <initializer_list>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "messaging/message_error.hpp"
 
 namespace voqcal {
 namespace {
@@ -69,7 +70,7 @@ void Put(T value, std::uint8_t** end) {
 // ---- Reading.
 
 [[noreturn]] void Fail(const std::string& cause) {
-  throw std::runtime_error("point cloud message: " + cause);
+  throw MessageError("point cloud message: " + cause);
 }
 
 const pointfield_t* FindField(const pointcloud2_t& message,

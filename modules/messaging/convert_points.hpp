@@ -19,7 +19,7 @@ pointcloud2_t ToMessage(const PointCloud& cloud_lidar_m, std::int64_t utime, std
 /// above
 ///   1e8 s count from the epoch, others from utime.
 ///
-/// @throws std::runtime_error with the cause, if sizes, offsets or counts contradict each other, a
+/// @throws MessageError with the cause, if sizes, offsets or counts contradict each other, a
 ///     coordinate is missing, or a ring is no number from 0 to 65535.
 PointCloud FromMessage(const pointcloud2_t& message);
 

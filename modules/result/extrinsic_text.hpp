@@ -21,6 +21,10 @@ struct ExportedExtrinsic {
   std::vector<std::string> Problems() const;
 };
 
+/// What the format needs and `extrinsic` has not (mrcal: a camera that is not a fisheye); empty if
+/// it can carry it.
+std::string FormatProblem(const std::string& format, const ExportedExtrinsic& extrinsic);
+
 /// The names that ExtrinsicText takes, in the order of its documentation.
 const std::vector<std::string>& ExportFormats();
 
@@ -42,7 +46,7 @@ const std::vector<std::string>& ExportFormats();
 /// - mrcal: a .cameramodel whose reference frame is the lidar's; rt_fromref.
 ///
 /// @throws std::invalid_argument with one line that lists the formats, if `format` is none of them,
-///     or says what the format needs (mrcal: a camera that is not a fisheye).
+///     or with its FormatProblem.
 std::string ExtrinsicText(const std::string& format, const ExportedExtrinsic& extrinsic);
 
 }  // namespace voqcal

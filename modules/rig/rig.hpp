@@ -21,12 +21,9 @@
 #include "core/selection/select_sets.hpp"
 #include "core/simulation/simulation.hpp"
 #include "rig/dashboard_options.hpp"
+#include "rig/lcm_url.hpp"
 
 namespace voqcal {
-
-/// The same as Bus' own default (a test of messaging holds them together): this module does not
-/// know LCM.
-inline constexpr char kDefaultRigLcmUrl[] = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
 
 /// The channel of each message, prefix included.
 struct Channels {
@@ -100,7 +97,7 @@ struct Rig {
   std::string name;
   std::filesystem::path path;
   std::string sha256;  ///< Of the file's bytes, lower-case hex.
-  std::string lcm_url = kDefaultRigLcmUrl;
+  std::string lcm_url = kDefaultLcmUrl;
   Channels channels;
   BoardSpec board;
   CameraModel camera;

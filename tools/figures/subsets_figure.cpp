@@ -71,10 +71,9 @@ void PrintSubsets(const SubsetsArgs& args) {
   const ScratchFolder scratch(std::filesystem::temp_directory_path() / "voqcal-subsets");
   const auto run = CollectSamples(rig, args.input, scratch.path());
   run->Finish(/*is_collecting_only=*/true);
-  std::vector<const BoardSample*> samples;
-  for (const int i : FindConsistent(run->samples(), rig.consistency).consistent) {
-    samples.push_back(&run->samples()[static_cast<std::size_t>(i)]);
-  }
+  const std::vector<BoardSample> consistent =
+      ConsistentSamples(run->samples(), FindConsistent(run->samples(), rig.consistency));
+  const std::vector<const BoardSample*> samples = PointersTo(consistent);
   double sum_mm = 0.0;
   double largest_mm = 0.0;
   int num_scored = 0;

@@ -18,6 +18,7 @@
 #include "files/point_cloud_file.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
+#include "messaging/encode.hpp"
 #include "messaging/log.hpp"
 #include "rig/frame_folder.hpp"
 #include "rig/rig.hpp"
@@ -32,13 +33,6 @@ struct ImportArgs {
   double rate_hz = 2.0;
 };
 
-template <typename Message>
-std::vector<std::uint8_t> Encode(const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
-
 // Numbers the events; their time is the frame's, so that lcm-logplayer paces them.
 class EventWriter {
  public:
@@ -46,7 +40,7 @@ class EventWriter {
 
   template <typename Message>
   void Write(const std::string& channel, const Message& message) {
-    writer_.Write({next_number_++, message.utime, channel, Encode(message)});
+    writer_.Write({next_number_++, message.utime, channel, EncodeMessage(message)});
   }
   void Flush() { writer_.Flush(); }
 

@@ -15,6 +15,7 @@
 #include "core/assessment/verdict.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/selection/voq.hpp"
+#include "core/units.hpp"
 #include "files/number_text.hpp"
 #include "messaging/convert_result.hpp"
 #include "report/overlays.hpp"
@@ -24,8 +25,6 @@ namespace voqcal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegPerRad = 180.0 / M_PI;
 
 Json FromScalar(const YAML::Node& node) {
   const std::string& text = node.Scalar();

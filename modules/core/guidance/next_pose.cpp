@@ -8,11 +8,11 @@
 #include "core/geometry/rigid.hpp"
 #include "core/guidance/advice.hpp"
 #include "core/problems.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 // Nearer in both is the same view again, with the same errors of lens and board.
 constexpr double kNewDistanceM = 0.3;
 constexpr double kNewAngleRad = 15.0 * kRadPerDeg;

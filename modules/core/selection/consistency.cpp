@@ -10,6 +10,7 @@
 
 #include "core/geometry/rigid.hpp"
 #include "core/problems.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
@@ -156,16 +157,14 @@ std::string ReasonFor(std::size_t candidate,
     worst = error;
     worst_sample = pairs.candidate(i).sample;
   }
-  constexpr double kDegreesPerRadian = 180.0 / M_PI;
   std::ostringstream text;
   text.setf(std::ios::fixed);
   text.precision(1);
   text << "disagrees with " << num_disagreeing << " of " << num_others
        << " consistent samples; worst with sample " << samples[worst_sample].id
        << ": centre distances differ by " << 1000.0 * worst.distance_m << " mm (limit "
-       << 1000.0 * options.max_distance_m << "), normal angles by "
-       << kDegreesPerRadian * worst.angle_rad << " deg (limit "
-       << kDegreesPerRadian * options.max_angle_rad << ")";
+       << 1000.0 * options.max_distance_m << "), normal angles by " << kDegPerRad * worst.angle_rad
+       << " deg (limit " << kDegPerRad * options.max_angle_rad << ")";
   return text.str();
 }
 

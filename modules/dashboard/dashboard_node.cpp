@@ -186,7 +186,7 @@ void DashboardNode::ShowResult() {
   Show(Slot::kResult,
        ResultJson(*refined_,
                   *assessment_,
-                  Judge(evidence),
+                  VerdictOf(evidence),
                   IsMadeFrom(*samples_, *assessment_),
                   working_on,
                   exports_));

@@ -5,28 +5,12 @@
 
 #include "core/format.hpp"
 #include "core/units.hpp"
+#include "result/verdict_yaml.hpp"
 
 namespace voqcal {
 namespace {
 
 std::string Tenths(double value) { return std::isnan(value) ? "-" : Format("%.1f", value); }
-
-Evidence EvidenceOf(const CalibrationResult& result) {
-  const Vector6d sigma = result.covariance.diagonal().cwiseSqrt();
-  Evidence evidence;
-  evidence.held_out_mm = result.held_out.centre_mm.mean;
-  evidence.in_sample_mm = result.in_sample.centre_mm.mean;
-  evidence.normal_deg = result.held_out.normal_deg.mean;
-  evidence.sigma_deg = kDegPerRad * sigma.head<3>().maxCoeff();
-  evidence.sigma_mm = 1e3 * sigma.tail<3>().maxCoeff();
-  evidence.num_used = static_cast<int>(result.used_ids.size());
-  evidence.num_samples = static_cast<int>(result.used_ids.size() + result.rejected.size());
-  evidence.num_cells = static_cast<int>(result.held_out_by_cell.size());
-  evidence.scene = result.scene_check.verdict;
-  evidence.scene_reason = result.scene_check.reason;
-  evidence.likeliest_fault = LikeliestFault(result.diagnosis.findings);
-  return evidence;
-}
 
 /// The headline, then what is not good.
 std::string VerdictLines(const Verdict& verdict) {
@@ -149,8 +133,6 @@ std::string Summary(const SceneScore& score) {
       score.corner_mm.mean,
       score.normal_deg.mean);
 }
-
-Verdict VerdictOf(const CalibrationResult& result) { return Judge(EvidenceOf(result)); }
 
 std::string Summary(const CalibrationResult& result) {
   std::string text = VerdictLines(VerdictOf(result)) + TransformLines(result) + MethodLines(result);

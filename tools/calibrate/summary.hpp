@@ -3,12 +3,9 @@
 #include <string>
 
 #include "core/assessment/scores.hpp"
-#include "core/assessment/verdict.hpp"
 #include "result/result_file.hpp"
 
 namespace voqcal {
-
-Verdict VerdictOf(const CalibrationResult& result);
 
 /// A result as a few lines for a terminal, its verdict first.
 std::string Summary(const CalibrationResult& result);

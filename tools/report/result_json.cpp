@@ -222,16 +222,6 @@ Json FramesPart(const OfflineRun& run) {
   return {{"counts", counts}, {"rejected", rejected}, {"losses", run.Losses()}};
 }
 
-Json VerdictPart(const CalibrationResult& result) {
-  const Verdict verdict = VerdictOf(result);
-  Json checks = Json::array();
-  for (const VerdictCheck& check : verdict.checks) {
-    checks.push_back(
-        {{"name", check.name}, {"grade", ToString(check.grade)}, {"text", check.text}});
-  }
-  return {{"grade", ToString(verdict.grade)}, {"headline", verdict.headline}, {"checks", checks}};
-}
-
 /// The colours of the pictures' points at equal steps from kNearRangeM to kFarRangeM, as "#rrggbb".
 Json RangeColours() {
   constexpr int kNumSteps = 16;
@@ -250,8 +240,9 @@ Json RangeColours() {
 
 std::string ResultJson(const Rig& rig, const OfflineRun& run) {
   const CalibrationResult& result = *run.assessor().result();
-  const Json json = {{"verdict", VerdictPart(result)},
-                     {"result", FromYaml(YAML::Load(ToYaml(result)))},
+  const Json from_yaml = FromYaml(YAML::Load(ToYaml(result)));
+  const Json json = {{"verdict", from_yaml["verdict"]},
+                     {"result", from_yaml},
                      {"rig", RigPart(rig)},
                      {"samples", SamplesPart(rig, run)},
                      {"sets", SetsPart(rig, run)},

@@ -20,7 +20,8 @@ struct SetPose {
   Eigen::Vector3d edge_x_camera, edge_y_camera;  ///< Unit, along the board's two directions.
 };
 
-std::vector<SetPose> PosesOf(const std::vector<const BoardSample*>& set, const CameraModel& camera);
+std::vector<SetPose> SetPosesOf(const std::vector<const BoardSample*>& set,
+                                const CameraModel& camera);
 
 /// The cost of one set, whitened, ten residuals a pose, with R n the rotated lidar normal:
 ///     perpendicularity   e_x . R n / sigma_normal, e_y . R n / sigma_normal

@@ -53,7 +53,7 @@ class PairTable {
     for (std::size_t i = 0; i < size(); ++i) {
       for (std::size_t j = i + 1; j < size(); ++j) {
         if (candidates[i].sample == candidates[j].sample) continue;  // one of them at most
-        const char agrees = Compare(i, j).Agrees() ? 1 : 0;
+        const char agrees = PairErrorOf(i, j).Agrees() ? 1 : 0;
         agrees_[i * size() + j] = agrees_[j * size() + i] = agrees;
       }
     }
@@ -63,7 +63,7 @@ class PairTable {
   bool Agree(std::size_t i, std::size_t j) const { return agrees_[i * size() + j] != 0; }
   const Candidate& candidate(std::size_t i) const { return candidates_[i]; }
 
-  PairError Compare(std::size_t i, std::size_t j) const {
+  PairError PairErrorOf(std::size_t i, std::size_t j) const {
     const BoardPose& la = LidarPose(i);
     const BoardPose& lb = LidarPose(j);
     const BoardPose& ca = samples_[candidates_[i].sample].camera.pose;
@@ -152,7 +152,7 @@ std::string ReasonFor(std::size_t candidate,
     if (pairs.candidate(i).sample == pairs.candidate(candidate).sample) continue;
     ++num_others;
     if (!pairs.Agree(candidate, i)) ++num_disagreeing;
-    const PairError error = pairs.Compare(candidate, i);
+    const PairError error = pairs.PairErrorOf(candidate, i);
     if (!std::isnan(error.relative) && error.relative <= worst.relative) continue;
     worst = error;
     worst_sample = pairs.candidate(i).sample;

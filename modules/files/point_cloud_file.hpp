@@ -11,8 +11,7 @@ namespace voqcal {
 /// (seconds after the sweep's begin). Others are not looked at. Points with NaN are kept.
 ///
 /// @throws std::runtime_error naming the file and the cause: missing, empty, cut short, no cloud,
-/// no
-///     x y z, numbers that are none.
+///     no x y z, numbers that are none.
 PointCloud ReadPointCloud(const std::filesystem::path& path);
 
 }  // namespace voqcal

@@ -25,9 +25,8 @@ struct ProcessArgs {
 /// The frame of every main(): reads the flags, sends spdlog to stderr under the module's name, runs
 /// `body`, and prints its exception (PrintError).
 ///
-/// @return the exit status: 0 when `body` returns (also after --help and --version), 1 when it
-/// throws,
-///     2 for flags that cannot be understood.
+/// @return the exit status: 0 when `body` returns (also after --help and --version); 1 when it
+///     throws; 2 for flags that cannot be understood.
 int RunProcess(int argc,
                const char* const* argv,
                const ProcessInfo& info,

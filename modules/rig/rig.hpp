@@ -122,8 +122,7 @@ struct Rig {
 /// Reads and checks a rig file (YAML). Options that are not given keep their defaults; board and
 /// camera must be given.
 /// @throws std::runtime_error naming file, line, key, rule and value: missing or unknown keys,
-/// wrong
-///     types, Problems() of any part.
+///     wrong types, Problems() of any part.
 Rig LoadRig(const std::filesystem::path& path);
 
 }  // namespace voqcal

@@ -29,12 +29,12 @@ BoardFace::BoardFace(const BoardSpec& board)
       half_height_m_(board.height_m / 2) {}
 
 int BoardFace::CellAt(double x_board_m, double y_board_m) const {
-  const int i = CellAlong(
-      x_board_m - left_m_, square_m_, num_x_, x_board_m<-half_width_m_, x_board_m> half_width_m_);
-  const int j = CellAlong(y_board_m - bottom_m_,
-                          square_m_,
-                          num_y_,
-                          y_board_m<-half_height_m_, y_board_m> half_height_m_);
+  const bool is_left = x_board_m < -half_width_m_;
+  const bool is_right = x_board_m > half_width_m_;
+  const bool is_below = y_board_m < -half_height_m_;
+  const bool is_above = y_board_m > half_height_m_;
+  const int i = CellAlong(x_board_m - left_m_, square_m_, num_x_, is_left, is_right);
+  const int j = CellAlong(y_board_m - bottom_m_, square_m_, num_y_, is_below, is_above);
   return j * (num_x_ + 2 * kSides) + i;
 }
 

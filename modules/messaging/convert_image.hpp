@@ -38,9 +38,8 @@ void RequireSound(const image_t& message);
 /// The image, 8-bit, GRAY or BGR, decoded if need be, without turning it by its EXIF orientation.
 ///
 /// @throws MessageError with the cause: as RequireSound, or data that cannot be decoded, as
-/// too large ones. (A
-///     JPEG damaged in its middle decodes to an image with wrong parts: the format has no
-///     checksum.)
+///     too large ones. (A JPEG damaged in its middle decodes to an image with wrong parts: the
+///     format has no checksum.)
 cv::Mat FromMessage(const image_t& message);
 
 camera_info_t ToMessage(const CameraModel& camera, std::int64_t utime, std::int64_t seq);

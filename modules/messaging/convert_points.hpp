@@ -16,8 +16,7 @@ pointcloud2_t ToMessage(const PointCloud& cloud_lidar_m, std::int64_t utime, std
 /// - "x" "y" "z": metres; they must be there.
 /// - "intensity", "ring" (or "channel"): as they are.
 /// - "time", "t" or "timestamp": FLOAT32 and FLOAT64 are seconds, integers nanoseconds; values
-/// above
-///   1e8 s count from the epoch, others from utime.
+///   above 1e8 s count from the epoch, others from utime.
 ///
 /// @throws MessageError with the cause, if sizes, offsets or counts contradict each other, a
 ///     coordinate is missing, or a ring is no number from 0 to 65535.

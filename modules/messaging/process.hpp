@@ -17,8 +17,8 @@ struct ProcessInfo {
 struct ProcessArgs {
   std::filesystem::path rig_path;      ///< --rig FILE.
   std::optional<std::string> lcm_url;  ///< --lcm-url URL, instead of the rig file's.
-  std::optional<std::filesystem::path>
-      session_dir;          ///< --session DIR, for modules that keep files.
+  /// --session DIR, for modules that keep files.
+  std::optional<std::filesystem::path> session_dir;
   bool is_verbose = false;  ///< --verbose: log level debug.
 };
 

@@ -35,9 +35,8 @@ std::vector<SetPose> SetPosesOf(const std::vector<const BoardSample*>& set,
 /// - The published centre term is the mean plus the standard deviation of the centres' distances.
 ///   The sum of their squares is n (mean^2 + std^2): the same two moments, differentiable at zero.
 /// - A rigid board's camera edges are exactly perpendicular to its camera normal, so
-/// perpendicularity
-///   says again what the alignment of normals says of tilt: together they weigh it by
-///   sigma_normal / sqrt(2). The reprojection likewise weighs a centre again across the view.
+///   perpendicularity says again what the alignment of normals says of tilt: together they weigh
+///   it by sigma_normal / sqrt(2). The reprojection likewise weighs a centre again across the view.
 /// - The published reprojection term is the worst pose's. Squares already let the worst weigh most;
 ///   a maximum has kinks where the worst pose changes.
 /// - Perpendicularity takes the two directions of the board, each the mean of two opposite edges:

@@ -23,7 +23,8 @@ double MoveM(bool has_intensity, bool has_ring) {
   LidarPoint point;
   point.position_m = {5.0F, 0.0F, 0.0F};
   cloud.points = {point};
-  return 5.0 - static_cast<double>(BiasOfShadesAndRings().Corrected(cloud).points[0].position_m.x());
+  return 5.0 -
+         static_cast<double>(BiasOfShadesAndRings().Corrected(cloud).points[0].position_m.x());
 }
 
 // The points of a cloud without intensities or rings have zeros there, which say nothing.

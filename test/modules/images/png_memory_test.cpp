@@ -1,8 +1,7 @@
 // libpng where memory runs out: its functions are replaced in this program.
-#include <dlfcn.h>
-
 #include <stdexcept>
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <png.h>
 

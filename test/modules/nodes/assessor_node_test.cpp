@@ -102,12 +102,12 @@ TEST_F(AssessorNodeTest, PassesTheProblemOnAndWritesNothing) {
 }
 
 TEST_F(AssessorNodeTest, CountsSamplesThatContradictThemselvesAndGoesOn) {
-  RunStagesBefore(test::NoisySamples(4), 4);
-  test::Send(&bus_, rig_.channels.calib_samples, BrokenSamples(4));
+  RunStagesBefore(test::NoisySamples(8), 8);
+  test::Send(&bus_, rig_.channels.calib_samples, BrokenSamples(8));
   Step(&node_);
   EXPECT_THAT(sent(), IsEmpty());
   EXPECT_EQ(node_.counters().at("unreadable message"), 1);
-  SendSamples(test::NoisySamples(4), 4);
+  SendSamples(test::NoisySamples(8), 8);
   Step(&node_);
   EXPECT_THAT(sent(), SizeIs(1));
 }

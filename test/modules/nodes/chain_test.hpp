@@ -38,7 +38,7 @@ class ChainTest : public ::testing::Test {
   static samples_t BrokenSamples(std::int64_t revision) {
     samples_t message = SamplesMessage(NoisySamples(4), revision);
     message.samples[0].lidar.num_points = 1;
-    message.samples[0].lidar.points.resize(1);
+    message.samples[0].lidar.points.assign(1, std::vector<float>(4));
     message.samples[0].lidar.num_rings = 2;
     message.samples[0].lidar.rings.resize(2);
     return message;

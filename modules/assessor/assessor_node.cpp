@@ -85,7 +85,10 @@ bool AssessorNode::Step() {
   if (!samples_ || !averaged_ || !refined_) return false;
   if (!IsMadeFrom(*samples_, *averaged_) || !IsMadeFrom(*samples_, *refined_)) return false;
   if (assessment_ && IsMadeFrom(*samples_, *assessment_)) return false;
-  UpdateAssessment();
+  if (!CanRead([this] { UpdateAssessment(); })) {
+    samples_.reset();
+    return false;
+  }
   Count(problem().empty() ? "assessments" : "without a result");
   Republish();
   return false;

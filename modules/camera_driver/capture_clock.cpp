@@ -1,22 +1,19 @@
 #include "camera_driver/capture_clock.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace voqcal {
 
-std::int64_t CaptureClock::UtimeOf(std::int64_t arrival_utime,
-                                   std::optional<std::int64_t> stream_us) {
-  if (!stream_us) return arrival_utime;
-  constexpr std::int64_t kDriftFraction = 10'000;  // 1 / 100 ppm
-  const std::int64_t sum_us = arrival_utime - *stream_us;
-  if (offset_us_) {
-    const std::int64_t elapsed_us = std::max<std::int64_t>(0, arrival_utime - last_arrival_utime_);
-    offset_us_ = std::min(sum_us, *offset_us_ + elapsed_us / kDriftFraction);
-  } else {
-    offset_us_ = sum_us;
-  }
-  last_arrival_utime_ = arrival_utime;
-  return *stream_us + *offset_us_;
+std::int64_t CaptureClock::UtimeOf(const Arrival& arrival, std::optional<std::int64_t> stream_us) {
+  if (!stream_us) return arrival.utime;
+  constexpr double kDrift = 100e-6;
+  const auto sum_us = static_cast<double>(arrival.steady_us - *stream_us);
+  const auto elapsed_us = static_cast<double>(arrival.steady_us - last_arrival_us_);
+  offset_us_ = offset_us_ ? std::min(sum_us, *offset_us_ + kDrift * elapsed_us) : sum_us;
+  last_arrival_us_ = arrival.steady_us;
+  const std::int64_t delay_us = std::llround(sum_us - *offset_us_);
+  return arrival.utime - delay_us;
 }
 
 }  // namespace voqcal

@@ -70,9 +70,10 @@ class VideoSource : public CameraSource {
     if (has_ended_ || (!video_.isOpened() && !Connect())) return {};
     cv::Mat frame;
     const bool is_read = video_.grab();
-    const std::int64_t arrival_utime = NowUs<std::chrono::system_clock>();
+    const CaptureClock::Arrival arrival = {NowUs<std::chrono::system_clock>(),
+                                           NowUs<std::chrono::steady_clock>()};
     if (!is_read || !video_.retrieve(frame) || frame.empty()) return WithoutFrame();
-    TimedImage image{UtimeOf(arrival_utime), Encoded(frame, options_.jpeg_quality)};
+    TimedImage image{UtimeOf(arrival), Encoded(frame, options_.jpeg_quality)};
     const auto info = InspectEncodedImage(image.bytes);
     if (is_file_ && !(info && info->has_end)) return WithoutFrame();  // cut off in this frame
     ++num_read_;
@@ -112,7 +113,7 @@ class VideoSource : public CameraSource {
     return Next();
   }
 
-  std::int64_t UtimeOf(std::int64_t arrival_utime) {
+  std::int64_t UtimeOf(const CaptureClock::Arrival& arrival) {
     const double stream_ms = video_.get(cv::CAP_PROP_POS_MSEC);
     const std::int64_t stream_us = std::llround(stream_ms * 1e3);
     if (is_file_) {
@@ -124,7 +125,7 @@ class VideoSource : public CameraSource {
       // The kernel's monotonic time of the buffer, to the wall clock.
       return stream_us + NowUs<std::chrono::system_clock>() - NowUs<std::chrono::steady_clock>();
     }
-    return clock_.UtimeOf(arrival_utime, stream_ms > 0 ? std::optional(stream_us) : std::nullopt);
+    return clock_.UtimeOf(arrival, stream_ms > 0 ? std::optional(stream_us) : std::nullopt);
   }
 
   CameraDriverOptions options_;

@@ -11,6 +11,7 @@
 #include "messaging/convert_points.hpp"
 #include "messaging/convert_result.hpp"
 #include "messaging/made_from.hpp"
+#include "messaging/wall_clock.hpp"
 #include "voqcal/command_t.hpp"
 
 namespace voqcal {
@@ -28,12 +29,6 @@ std::chrono::steady_clock::duration Period(double rate_hz, bool has_pages) {
 /// What rejects have in common: "the board moves: 0.12 m" is the same as "the board moves: 0.13 m".
 std::string Cause(const event_t& event) {
   return event.kind + " " + event.reason.substr(0, event.reason.find(':'));
-}
-
-std::int64_t WallClockUs() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 }  // namespace

@@ -36,12 +36,9 @@ std::map<std::string, StaticFile> ExportsOf(const std::filesystem::path& result_
   extrinsic.camera = camera;
   exports["extrinsic.yaml"] = {kText, text, true};
   for (const std::string& format : ExportFormats()) {
-    try {
-      exports["extrinsic_" + format + EndingOf(format)] = {
-          kText, ExtrinsicText(format, extrinsic), true};
-    } catch (const std::invalid_argument&) {
-      continue;  // mrcal has no fisheye
-    }
+    if (!FormatProblem(format, extrinsic).empty()) continue;  // mrcal has no fisheye
+    exports["extrinsic_" + format + EndingOf(format)] = {
+        kText, ExtrinsicText(format, extrinsic), true};
   }
   return exports;
 }

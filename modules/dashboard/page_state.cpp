@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/selection/voq.hpp"
+#include "core/units.hpp"
 #include "dashboard/slot.hpp"
 #include "messaging/convert_board.hpp"
 #include "result/extrinsic_text.hpp"
@@ -16,8 +17,6 @@ namespace voqcal {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr double kDegPerRad = 180.0 / M_PI;
 
 Json Of(Slot slot) { return {{"kind", ToString(slot)}}; }
 

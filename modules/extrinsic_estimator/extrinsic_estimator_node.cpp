@@ -21,7 +21,10 @@ std::string ExtrinsicEstimatorNode::State() const {
 bool ExtrinsicEstimatorNode::Step() {
   if (!samples_ || !sets_ || !IsMadeFrom(*samples_, *sets_)) return false;
   if (result_ && IsMadeFrom(*samples_, *result_)) return false;
-  result_ = Estimate();
+  if (!CanRead([this] { result_ = Estimate(); })) {
+    samples_.reset();
+    return false;
+  }
   Count(result_->problem.empty() ? "estimates" : "without a result");
   Republish();
   return false;

@@ -21,7 +21,10 @@ std::string ExtrinsicRefinerNode::State() const {
 bool ExtrinsicRefinerNode::Step() {
   if (!samples_ || !averaged_ || !IsMadeFrom(*samples_, *averaged_)) return false;
   if (result_ && IsMadeFrom(*samples_, *result_)) return false;
-  result_ = Refine();
+  if (!CanRead([this] { result_ = Refine(); })) {
+    samples_.reset();
+    return false;
+  }
   Count(result_->problem.empty() ? "refinements" : "without a result");
   Republish();
   return false;

@@ -22,7 +22,7 @@ std::string_view TakePart(std::string_view* text) {
 }
 
 /// Negative, zero or positive, as numbers of any length if both are digits.
-int Compare(std::string_view a, std::string_view b) {
+int OrderOfParts(std::string_view a, std::string_view b) {
   if (IsDigit(a.front()) && IsDigit(b.front())) {
     const auto without_zeros = [](std::string_view digits) {
       return digits.substr(std::min(digits.find_first_not_of('0'), digits.size()));
@@ -53,7 +53,7 @@ bool IsNaturallyLess(std::string_view a, std::string_view b) {
   std::string_view rest_a = a;
   std::string_view rest_b = b;
   while (!rest_a.empty() && !rest_b.empty()) {
-    const int order = Compare(TakePart(&rest_a), TakePart(&rest_b));
+    const int order = OrderOfParts(TakePart(&rest_a), TakePart(&rest_b));
     if (order != 0) return order < 0;
   }
   if (rest_a.empty() != rest_b.empty()) return rest_a.empty();

@@ -10,13 +10,12 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include "core/units.hpp"
 #include "files/nearest_word.hpp"
 #include "files/number_text.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 int LineOfNode(const YAML::Node& node) { return node.Mark().line + 1; }
 
@@ -69,6 +68,21 @@ std::string DefaultText(int value) { return std::to_string(value); }
 std::string DefaultText(std::uint32_t value) { return std::to_string(value); }
 std::string DefaultText(bool value) { return value ? "true" : "false"; }
 std::string DefaultText(const std::string& value) { return value; }
+
+/// "x_rad must ..., is 0.1" as a file with degrees says it: "x_deg must ..., is 5.72958".
+std::string InDegrees(std::string problem) {
+  const std::string is = ", is ";
+  const std::size_t name_end = problem.find(' ');
+  const std::size_t unit = problem.rfind("_rad", name_end);
+  const std::size_t value = problem.rfind(is);
+  if (unit == std::string::npos || unit + 4 != name_end || value == std::string::npos) {
+    return problem;
+  }
+  std::ostringstream text;
+  text << problem.substr(0, unit) << "_deg" << problem.substr(name_end, value - name_end) << is
+       << std::stod(problem.substr(value + is.size())) / kRadPerDeg;
+  return text.str();
+}
 
 class IgnoreEvents : public YAML::EventHandler {
   using Mark = YAML::Mark;
@@ -261,10 +275,9 @@ void YamlSection::AddError(const std::string& key, const std::string& rule) {
 }
 
 void YamlSection::AddProblems(const std::vector<std::string>& problems) {
-  for (const std::string& problem : problems) {
-    std::string key = problem.substr(0, problem.find(' '));
-    const std::size_t unit = key.rfind("_rad");
-    if (unit != std::string::npos && !Has(key)) key.replace(unit, std::string::npos, "_deg");
+  for (const std::string& in_radians : problems) {
+    const std::string problem = InDegrees(in_radians);
+    const std::string key = problem.substr(0, problem.find(' '));
     document_->AddError(LineOf(key), (path_.empty() ? "" : path_ + ": ") + problem);
   }
 }

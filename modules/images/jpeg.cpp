@@ -43,7 +43,7 @@ template <typename Info>
 /// libjpeg's own goes on with an end marker, and the missing rest is grey.
 boolean FailAtEnd(j_decompress_ptr info) { Fail(info, "it is cut off"); }
 
-/// Of what libjpeg only warns: an end marker before the image's end, where the rest is grey too.
+/// libjpeg only warns of an end marker before the image's end; the rest would be grey there too.
 void FailAtEarlyEnd(j_common_ptr common, int /*level*/) {
   const auto* info = reinterpret_cast<j_decompress_ptr>(common);
   if (info->err->msg_code == JWRN_HIT_MARKER && info->unread_marker == JPEG_EOI) {

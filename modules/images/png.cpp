@@ -22,8 +22,11 @@ class Reader {
     };
     const auto ignore = [](png_structp, png_const_charp) {};
     png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure_, fail, ignore);
-    info = png_create_info_struct(png);
-    if (info == nullptr) throw std::runtime_error("libpng cannot be used");
+    info = png_create_info_struct(png);  // null for null
+    if (info == nullptr) {
+      png_destroy_read_struct(&png, nullptr, nullptr);  // no destructor runs
+      throw std::runtime_error("libpng cannot be used");
+    }
     // Texts, profiles and the like, a thousand of up to 8 MB each, are not even unpacked.
     Call([this] { png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1); });
     png_set_read_fn(png, this, [](png_structp from, png_bytep to, std::size_t num_bytes) {

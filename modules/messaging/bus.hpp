@@ -12,9 +12,6 @@
 
 namespace voqcal {
 
-/// Its recv_buf_size is what lets images and sweeps arrive; ttl=0 keeps everything on this host.
-inline constexpr char kDefaultLcmUrl[] = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
-
 /// How many undelivered messages of a channel wait, at most.
 enum class Queue {
   kState,  ///< Some tens, of state that travels whole: handlers keep the newest, Step works on it

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "messaging/bus.hpp"
+#include "messaging/encode.hpp"
 #include "messaging/sequence.hpp"
 
 namespace voqcal {
@@ -53,9 +54,8 @@ void Bus::Subscribe(const std::string& channel,
 
 template <typename Message>
 void Bus::Publish(const std::string& channel, const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  const int num_encoded = message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  if (num_encoded != static_cast<int>(bytes.size())) {
+  const std::vector<std::uint8_t> bytes = EncodeMessage(message);
+  if (bytes.empty()) {
     CountPublishFailure(channel, std::string("cannot encode ") + Message::getTypeName());
     return;
   }

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+#include <string>
+
+#include "messaging/message_error.hpp"
+#include "messaging/row_major.hpp"
 
 namespace voqcal {
 namespace {
-
-using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 /// A cloud without intensity is not one of intensity 0.
 constexpr float kNoIntensity = std::numeric_limits<float>::quiet_NaN();
@@ -26,8 +27,8 @@ void CopyPoints(const PointCloud& cloud_lidar_m, lidar_candidate_t* message) {
 
 PointCloud PointsOf(const lidar_candidate_t& message) {
   if (!message.rings.empty() && message.rings.size() != message.points.size()) {
-    throw std::runtime_error("lidar board message: " + std::to_string(message.points.size()) +
-                             " points but " + std::to_string(message.rings.size()) + " rings");
+    throw MessageError("lidar board message: " + std::to_string(message.points.size()) +
+                       " points but " + std::to_string(message.rings.size()) + " rings");
   }
   PointCloud cloud;
   cloud.has_ring = !message.rings.empty();
@@ -46,8 +47,7 @@ PointCloud PointsOf(const lidar_candidate_t& message) {
 
 SideView ViewOf(std::int8_t code) {
   if (code < 0 || code > static_cast<std::int8_t>(SideView::kGap)) {
-    throw std::runtime_error("lidar board message: side " + std::to_string(code) +
-                             " is none of 0 to 4");
+    throw MessageError("lidar board message: side " + std::to_string(code) + " is none of 0 to 4");
   }
   return static_cast<SideView>(code);
 }

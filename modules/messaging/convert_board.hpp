@@ -24,7 +24,7 @@ board_pose_t ToMessage(const BoardPose& pose);
 BoardPose FromMessage(const board_pose_t& message);
 
 lidar_candidate_t ToMessage(const LidarBoard& board);
-/// @throws std::runtime_error if the counts of points and rings contradict each other.
+/// @throws MessageError if the counts of points and rings contradict each other.
 LidarBoard FromMessage(const lidar_candidate_t& message);
 
 /// With utime and seq 0, as a sample holds it.

@@ -11,14 +11,13 @@
 #include "images/encoded_image.hpp"
 #include "images/jpeg.hpp"
 #include "images/png.hpp"
+#include "messaging/message_error.hpp"
 #include "messaging/sequence.hpp"
 
 namespace voqcal {
 namespace {
 
-[[noreturn]] void Fail(const std::string& cause) {
-  throw std::runtime_error("image message: " + cause);
-}
+[[noreturn]] void Fail(const std::string& cause) { throw MessageError("image message: " + cause); }
 
 std::string Size(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
@@ -173,8 +172,7 @@ camera_info_t ToMessage(const CameraModel& camera, std::int64_t utime, std::int6
 CameraModel FromMessage(const camera_info_t& message) {
   const auto lens = LensModelFromString(message.lens_model);
   if (!lens) {
-    throw std::runtime_error("camera info message: unknown lens model '" + message.lens_model +
-                             "'");
+    throw MessageError("camera info message: unknown lens model '" + message.lens_model + "'");
   }
   CameraModel camera;
   camera.lens = *lens;
@@ -187,7 +185,7 @@ CameraModel FromMessage(const camera_info_t& message) {
   std::copy(
       std::begin(message.distortion), std::end(message.distortion), camera.distortion.begin());
   const auto problems = camera.Problems();
-  if (!problems.empty()) throw std::runtime_error("camera info message: " + problems.front());
+  if (!problems.empty()) throw MessageError("camera info message: " + problems.front());
   return camera;
 }
 

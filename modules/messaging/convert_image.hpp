@@ -31,21 +31,20 @@ image_t EncodedToMessage(std::vector<std::uint8_t> bytes, std::int64_t utime, st
 
 /// Whatever can be told of an image without decoding it, so that a damaged one costs no memory.
 ///
-/// @throws std::runtime_error with the cause: sizes that contradict each other, an unknown
+/// @throws MessageError with the cause: sizes that contradict each other, an unknown
 ///     pixelformat, data of another format, or a JPEG or PNG without its end.
 void RequireSound(const image_t& message);
 
 /// The image, 8-bit, GRAY or BGR, decoded if need be, without turning it by its EXIF orientation.
 ///
-/// @throws std::runtime_error with the cause: as RequireSound, or data that cannot be decoded, as
-/// too large ones. (A
-///     JPEG damaged in its middle decodes to an image with wrong parts: the format has no
-///     checksum.)
+/// @throws MessageError with the cause: as RequireSound, or data that cannot be decoded, as
+///     too large ones. (A JPEG damaged in its middle decodes to an image with wrong parts: the
+///     format has no checksum.)
 cv::Mat FromMessage(const image_t& message);
 
 camera_info_t ToMessage(const CameraModel& camera, std::int64_t utime, std::int64_t seq);
 
-/// @throws std::runtime_error for an unknown lens model or one with Problems().
+/// @throws MessageError for an unknown lens model or one with Problems().
 CameraModel FromMessage(const camera_info_t& message);
 
 }  // namespace voqcal

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <cstring>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "core/lidar/cloud_fields.hpp"
+#include "messaging/message_error.hpp"
 
 namespace voqcal {
 namespace {
@@ -69,7 +69,7 @@ void Put(T value, std::uint8_t** end) {
 // ---- Reading.
 
 [[noreturn]] void Fail(const std::string& cause) {
-  throw std::runtime_error("point cloud message: " + cause);
+  throw MessageError("point cloud message: " + cause);
 }
 
 /// A field by any of its usual names.

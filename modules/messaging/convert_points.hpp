@@ -16,11 +16,10 @@ pointcloud2_t ToMessage(const PointCloud& cloud_lidar_m, std::int64_t utime, std
 /// - "x" "y" "z": metres; they must be there.
 /// - "intensity", "ring" and "time" by any usual name (core/lidar/cloud_fields.hpp).
 /// - times: FLOAT32 and FLOAT64 are seconds, integers nanoseconds; values above 1e8 s count from
-/// the
-///   epoch, others from utime.
+///   the epoch, others from utime.
 ///
-/// @throws std::runtime_error with the cause, if sizes, offsets or counts contradict each other, or
-///     a coordinate is missing.
+/// @throws MessageError with the cause, if sizes, offsets or counts contradict each other, a
+///     coordinate is missing, or a ring is no number from 0 to 65535.
 PointCloud FromMessage(const pointcloud2_t& message);
 
 }  // namespace voqcal

@@ -1,11 +1,9 @@
-#include <stdexcept>
-
 #include "messaging/convert_result.hpp"
+#include "messaging/message_error.hpp"
+#include "messaging/row_major.hpp"
 
 namespace voqcal {
 namespace {
-
-using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 bias_estimate_t ToMessage(const BiasEstimate& estimate) {
   bias_estimate_t message{};
@@ -21,7 +19,7 @@ BiasEstimate FromMessage(const bias_estimate_t& message) {
 
 RefineMethod MethodFromString(const std::string& name) {
   const std::optional<RefineMethod> method = RefineMethodFromString(name);
-  if (!method) throw std::runtime_error("refined extrinsic message: unknown method '" + name + "'");
+  if (!method) throw MessageError("refined extrinsic message: unknown method '" + name + "'");
   return *method;
 }
 

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "messaging/convert_board.hpp"
+#include "messaging/message_error.hpp"
 
 namespace voqcal {
 namespace {
-
-using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 /// Unit length and w >= 0: one of the two quaternions of a rotation.
 Eigen::Quaterniond QuaternionOf(const Eigen::Isometry3d& T_target_source) {
@@ -25,7 +23,7 @@ SetStatus StatusFromString(const std::string& text) {
        {SetStatus::kConverged, SetStatus::kNotConverged, SetStatus::kDegenerate}) {
     if (ToString(status) == text) return status;
   }
-  throw std::runtime_error("set extrinsic message: unknown status '" + text + "'");
+  throw MessageError("set extrinsic message: unknown status '" + text + "'");
 }
 
 }  // namespace
@@ -43,9 +41,9 @@ Eigen::Isometry3d FromMessage(const transform_t& message) {
   const Eigen::Map<const Eigen::Vector3d> t_m(message.translation_m);
   constexpr double kMaxDeparture = 1e-6;  // what a sender in single precision rounds away
   if (!(std::abs(q.norm() - 1.0) <= kMaxDeparture)) {
-    throw std::runtime_error("transform message: quaternion of length " + std::to_string(q.norm()));
+    throw MessageError("transform message: quaternion of length " + std::to_string(q.norm()));
   }
-  if (!t_m.allFinite()) throw std::runtime_error("transform message: translation is not finite");
+  if (!t_m.allFinite()) throw MessageError("transform message: translation is not finite");
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
   T_target_source.linear() = q.normalized().toRotationMatrix();
   T_target_source.translation() = t_m;
@@ -80,7 +78,7 @@ VoqSet FromMessage(const voq_set_t& message, const std::vector<std::int64_t>& sa
   for (const std::int64_t id : message.sample_ids) {
     const auto found = std::find(sample_ids.begin(), sample_ids.end(), id);
     if (found == sample_ids.end()) {
-      throw std::runtime_error("VOQ set message: no sample " + std::to_string(id));
+      throw MessageError("VOQ set message: no sample " + std::to_string(id));
     }
     set.samples.push_back(static_cast<int>(found - sample_ids.begin()));
   }
@@ -107,8 +105,8 @@ void TakeChosen(const std::vector<chosen_candidate_t>& chosen, std::vector<Board
     const int num_runners_up =
         sample == samples->end() ? 0 : static_cast<int>(sample->runners_up.size());
     if (each.candidate < 1 || each.candidate > num_runners_up) {
-      throw std::runtime_error("sample " + std::to_string(each.sample_id) + " has no candidate " +
-                               std::to_string(each.candidate));
+      throw MessageError("sample " + std::to_string(each.sample_id) + " has no candidate " +
+                         std::to_string(each.candidate));
     }
     TakeCandidate(each.candidate, &*sample);
   }

@@ -30,7 +30,7 @@ namespace voqcal {
 
 /// The quaternion has unit length and w >= 0.
 transform_t ToMessage(const Eigen::Isometry3d& T_target_source);
-/// @throws std::runtime_error if the quaternion is not of unit length or a number is not finite.
+/// @throws MessageError if the quaternion is not of unit length or a number is not finite.
 Eigen::Isometry3d FromMessage(const transform_t& message);
 
 /// For other LCM systems: bot_core's order w x y z.
@@ -39,15 +39,15 @@ rigid_transform_t RigidTransformMessage(const Eigen::Isometry3d& T_target_source
 
 /// @param sample_ids  id of each sample that the set's indices refer to.
 voq_set_t ToMessage(const VoqSet& set, const std::vector<std::int64_t>& sample_ids);
-/// @throws std::runtime_error if the set has a sample that `sample_ids` has not.
+/// @throws MessageError if the set has a sample that `sample_ids` has not.
 VoqSet FromMessage(const voq_set_t& message, const std::vector<std::int64_t>& sample_ids);
 
 chosen_candidate_t ToMessage(const ExchangedSample& exchanged);
 /// Takes for each sample the candidate that was chosen for it.
-/// @throws std::runtime_error if a sample or a candidate that was chosen is not there.
+/// @throws MessageError if a sample or a candidate that was chosen is not there.
 void TakeChosen(const std::vector<chosen_candidate_t>& chosen, std::vector<BoardSample>* samples);
 /// The samples of the message, with the candidates that were chosen.
-/// @throws std::runtime_error as TakeChosen does.
+/// @throws MessageError as TakeChosen does.
 std::vector<BoardSample> SamplesAsChosen(const samples_t& message,
                                          const std::vector<chosen_candidate_t>& chosen);
 
@@ -56,7 +56,7 @@ set_extrinsic_t ToMessage(const SetExtrinsic& extrinsic,
                           const voq_set_t& set,
                           bool is_kept,
                           const std::string& reason);
-/// @throws std::runtime_error for an unknown status or a broken transform.
+/// @throws MessageError for an unknown status or a broken transform.
 SetExtrinsic FromMessage(const set_extrinsic_t& message);
 
 /// The average and its spread with each set's result; `sets` and `extrinsics` go together.
@@ -71,7 +71,7 @@ extrinsic_refined_t ToMessage(const BestExtrinsic& best,
                               const std::vector<std::int64_t>& sample_ids);
 /// All that the message carries: of the trials the scores without single poses, and of the
 /// likelihood bias, uncertainty and noise.
-/// @throws std::runtime_error for an unknown method or a broken transform.
+/// @throws MessageError for an unknown method or a broken transform.
 BestExtrinsic FromMessage(const extrinsic_refined_t& message);
 
 lidar_bias_t ToMessage(const LidarBias& bias);

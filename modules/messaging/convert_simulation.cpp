@@ -1,9 +1,9 @@
 #include "messaging/convert_simulation.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "messaging/convert_result.hpp"
+#include "messaging/message_error.hpp"
 
 namespace voqcal {
 namespace {
@@ -28,7 +28,7 @@ simulated_board_t ToMessage(const GuidedBoard& board, std::int64_t epoch_utime) 
 
 std::vector<BoardStop> StopsFromMessage(const simulated_board_t& message,
                                         std::int64_t epoch_utime) {
-  if (message.num_stops < 1) throw std::runtime_error("a simulated board without a stop");
+  if (message.num_stops < 1) throw MessageError("a simulated board without a stop");
   std::vector<BoardStop> stops;
   for (std::size_t i = 0; i < message.leave_utime.size(); ++i) {
     stops.push_back({1e-6 * static_cast<double>(message.leave_utime[i] - epoch_utime),

@@ -1,5 +1,7 @@
 #include "messaging/module.hpp"
 
+#include <spdlog/spdlog.h>
+
 namespace voqcal {
 
 std::string Module::Summary() const {
@@ -9,6 +11,11 @@ std::string Module::Summary() const {
     text += std::to_string(count) + " " + what;
   }
   return text.empty() ? "nothing to count" : text;
+}
+
+void Module::CountUnreadable(const char* cause) {
+  spdlog::debug("unreadable message: {}", cause);
+  Count("unreadable message");
 }
 
 }  // namespace voqcal

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "messaging/message_error.hpp"
+
 namespace voqcal {
 
 /// One module of the flow, between the bus and core. Handlers convert and keep; Step computes.
@@ -43,9 +45,25 @@ class Module {
 
  protected:
   void Count(const std::string& what) { ++counters_[what]; }
+  /// Does `work`, which reads messages that were kept. One that contradicts itself or the others
+  /// costs that message only: it is counted, and the caller forgets the samples that it kept. They
+  /// and what belongs to them come again within a second.
+  /// @return whether all could be read.
+  template <typename Work>
+  bool CanRead(const Work& work) {
+    try {
+      work();
+      return true;
+    } catch (const MessageError& error) {
+      CountUnreadable(error.what());
+      return false;
+    }
+  }
   void SetCount(const std::string& what, std::int64_t count) { counters_[what] = count; }
 
  private:
+  void CountUnreadable(const char* cause);
+
   std::map<std::string, std::int64_t> counters_;
 };
 

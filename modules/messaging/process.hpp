@@ -17,17 +17,16 @@ struct ProcessInfo {
 struct ProcessArgs {
   std::filesystem::path rig_path;      ///< --rig FILE.
   std::optional<std::string> lcm_url;  ///< --lcm-url URL, instead of the rig file's.
-  std::optional<std::filesystem::path>
-      session_dir;          ///< --session DIR, for modules that keep files.
+  /// --session DIR, for modules that keep files.
+  std::optional<std::filesystem::path> session_dir;
   bool is_verbose = false;  ///< --verbose: log level debug.
 };
 
 /// The frame of every main(): reads the flags, sends spdlog to stderr under the module's name, runs
 /// `body`, and prints its exception (PrintError).
 ///
-/// @return the exit status: 0 when `body` returns (also after --help and --version), 1 when it
-/// throws,
-///     2 for flags that cannot be understood.
+/// @return the exit status: 0 when `body` returns (also after --help and --version); 1 when it
+///     throws; 2 for flags that cannot be understood.
 int RunProcess(int argc,
                const char* const* argv,
                const ProcessInfo& info,

@@ -2,17 +2,9 @@
 
 #include <utility>
 
+#include "messaging/wall_clock.hpp"
+
 namespace voqcal {
-namespace {
-
-/// The one wall clock of messaging: a heartbeat says when it was sent, nothing is computed from it.
-std::int64_t WallClockUs() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-}  // namespace
 
 StatusPublisher::StatusPublisher(Bus& bus, std::string channel)
     : bus_(bus), channel_(std::move(channel)) {}

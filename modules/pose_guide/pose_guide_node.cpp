@@ -29,7 +29,10 @@ bool PoseGuideNode::Step() {
   if (!samples_) return false;
   const std::optional<Basis> basis = BestBasis();
   if (!basis || (next_ && IsMadeFrom(*samples_, *next_) && basis_ == basis)) return false;
-  next_ = Propose(*basis);
+  if (!CanRead([&] { next_ = Propose(*basis); })) {
+    samples_.reset();
+    return false;
+  }
   basis_ = basis;
   Count(next_->problem.empty() ? "proposals" : "without a pose");
   Republish();

@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "core/units.hpp"
 #include "files/number_text.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / M_PI;
 
 std::string SpreadLine(const std::string& name, const Spread& spread) {
   return "    " + name + ": {mean: " + NumberText(spread.mean) +

@@ -248,15 +248,7 @@ std::string AutowareText(const ExportedExtrinsic& extrinsic) {
 }
 
 std::string MrcalText(const ExportedExtrinsic& extrinsic) {
-  if (!extrinsic.camera) {
-    throw std::invalid_argument("format mrcal holds the lens too: it needs the rig file (--rig)");
-  }
   const CameraModel& camera = *extrinsic.camera;
-  if (camera.lens == LensModel::kEquidistant) {
-    throw std::invalid_argument(
-        "format mrcal has no lens model for an equidistant (fisheye) camera; it has plumb_bob and "
-        "rational");
-  }
   const int num_distortion = NumDistortion(camera.lens);
   std::vector<double> intrinsics{camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px};
   intrinsics.insert(
@@ -317,7 +309,17 @@ const std::vector<std::string>& ExportFormats() {
   return kNames;
 }
 
+std::string FormatProblem(const std::string& format, const ExportedExtrinsic& extrinsic) {
+  if (format != "mrcal") return {};
+  if (!extrinsic.camera) return "format mrcal holds the lens too: it needs the rig file (--rig)";
+  if (extrinsic.camera->lens != LensModel::kEquidistant) return {};
+  return "format mrcal has no lens model for an equidistant (fisheye) camera; it has plumb_bob and "
+         "rational";
+}
+
 std::string ExtrinsicText(const std::string& format, const ExportedExtrinsic& extrinsic) {
+  const std::string problem = FormatProblem(format, extrinsic);
+  if (!problem.empty()) throw std::invalid_argument(problem);
   for (const auto& [name, formatter] : Formatters()) {
     if (name == format) return formatter(extrinsic);
   }

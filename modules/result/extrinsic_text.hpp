@@ -21,6 +21,10 @@ struct ExportedExtrinsic {
   std::vector<std::string> Problems() const;
 };
 
+/// What the format needs and `extrinsic` has not (mrcal: a camera that is not a fisheye); empty if
+/// it can carry it.
+std::string FormatProblem(const std::string& format, const ExportedExtrinsic& extrinsic);
+
 /// The names that ExtrinsicText takes, in the order of its documentation.
 const std::vector<std::string>& ExportFormats();
 
@@ -28,12 +32,11 @@ const std::vector<std::string>& ExportFormats();
 /// say which way round it is, with a point that can be checked by hand.
 ///
 /// - ros, ros2, ros1: the command line of tf2_ros' static_transform_publisher: pose of the camera
-/// in
-///   the lidar frame, quaternion x y z w. "ros" is the ROS 2 command with that of ROS 1 beside it.
+///   in the lidar frame, quaternion x y z w. "ros" is the ROS 2 command with that of ROS 1 beside
+///   it.
 /// - urdf: a fixed joint; pose of the camera in the lidar frame, rpy about the fixed axes x, y, z.
 /// - bot_frames: the coordinate_frames block of libbot2's bot_frames; takes the camera's
-/// coordinates
-///   to the lidar's, quaternion w x y z.
+///   coordinates to the lidar's, quaternion w x y z.
 /// - kalibr: an entry of a camchain.yaml; T_cam_lidar takes the lidar's coordinates to the
 /// camera's.
 /// - opencv: cv::FileStorage YAML; rvec and tvec as cv::projectPoints takes them with lidar points.
@@ -42,7 +45,7 @@ const std::vector<std::string>& ExportFormats();
 /// - mrcal: a .cameramodel whose reference frame is the lidar's; rt_fromref.
 ///
 /// @throws std::invalid_argument with one line that lists the formats, if `format` is none of them,
-///     or says what the format needs (mrcal: a camera that is not a fisheye).
+///     or with its FormatProblem.
 std::string ExtrinsicText(const std::string& format, const ExportedExtrinsic& extrinsic);
 
 }  // namespace voqcal

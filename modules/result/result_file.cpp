@@ -10,6 +10,7 @@
 #include "result/assessment_yaml.hpp"
 #include "result/lens_correction_yaml.hpp"
 #include "result/lidar_bias_yaml.hpp"
+#include "result/verdict_yaml.hpp"
 
 namespace voqcal {
 namespace {
@@ -115,7 +116,7 @@ std::string ToYaml(const CalibrationResult& result) {
          "# of T_camera_lidar: rotation_rad, then translation_m, perturbed on the left (camera) "
          "side\n"
          "covariance:\n" +
-         covariance + Methods(result) + Averaged(result.averaged) +
+         covariance + VerdictYaml(VerdictOf(result)) + Methods(result) + Averaged(result.averaged) +
          LidarBiasYaml(result.lidar_bias) + LensCorrectionYaml(result.lens_correction) +
          "# reprojection error of the board's centre in pixels, and times the metres per pixel at "
          "the\n"

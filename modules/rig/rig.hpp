@@ -22,12 +22,9 @@
 #include "core/selection/select_sets.hpp"
 #include "core/simulation/simulation.hpp"
 #include "rig/dashboard_options.hpp"
+#include "rig/lcm_url.hpp"
 
 namespace voqcal {
-
-/// The same as Bus' own default (a test of messaging holds them together): this module does not
-/// know LCM.
-inline constexpr char kDefaultRigLcmUrl[] = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
 
 /// The channel of each message, prefix included.
 struct Channels {
@@ -116,7 +113,7 @@ struct Rig {
   std::string name;
   std::filesystem::path path;
   std::string sha256;  ///< Of the file's bytes, lower-case hex.
-  std::string lcm_url = kDefaultRigLcmUrl;
+  std::string lcm_url = kDefaultLcmUrl;
   Channels channels;
   BoardSpec board;
   CameraModel camera;
@@ -144,8 +141,7 @@ struct Rig {
 /// Reads and checks a rig file (YAML). Options that are not given keep their defaults; board and
 /// camera must be given.
 /// @throws std::runtime_error naming file, line, key, rule and value: missing or unknown keys,
-/// wrong
-///     types, Problems() of any part.
+///     wrong types, Problems() of any part.
 Rig LoadRig(const std::filesystem::path& path);
 
 }  // namespace voqcal

@@ -15,7 +15,7 @@ namespace {
 
 /// Reads nothing more of a section: what is left over or does not fit together becomes an error.
 template <typename Options>
-void Finish(const Options& options, YamlSection* section) {
+void CheckAndClose(const Options& options, YamlSection* section) {
   section->AddProblems(options.Problems());
   section->RefuseUnknownKeys();
 }
@@ -157,7 +157,7 @@ void ReadSimulation(YamlSection* top, SimulationOptions* options) {
   section.Read("dropout", &options->dropout);
   section.Read("image_noise", &options->image_noise);
   section.Read("image_blur_px", &options->image_blur_px);
-  Finish(*options, &section);
+  CheckAndClose(*options, &section);
 }
 
 void ReadLidarBoardDetector(YamlSection* top, LidarBoardOptions* options) {
@@ -189,7 +189,7 @@ void ReadLidarBoardDetector(YamlSection* top, LidarBoardOptions* options) {
   background.Read("memory_sweeps", &options->background.memory_sweeps);
   background.Read("min_step_m", &options->background.min_step_m);
   background.RefuseUnknownKeys();
-  Finish(*options, &section);
+  CheckAndClose(*options, &section);
 }
 
 void ReadCameraBoardDetector(YamlSection* top, CameraBoardOptions* options) {
@@ -201,7 +201,7 @@ void ReadCameraBoardDetector(YamlSection* top, CameraBoardOptions* options) {
   section.Read("min_contrast", &options->min_contrast);
   section.Read("max_outside_share", &options->max_outside_share);
   section.Read("max_mirrored_probability", &options->max_mirrored_probability);
-  Finish(*options, &section);
+  CheckAndClose(*options, &section);
 }
 
 void ReadSampleCollector(YamlSection* top, SamplePickerOptions* options) {
@@ -214,7 +214,7 @@ void ReadSampleCollector(YamlSection* top, SamplePickerOptions* options) {
   section.ReadDegrees("min_new_angle_deg", &options->min_new_angle_rad);
   section.Read("max_edge_error_m", &options->max_edge_error_m);
   section.Read("max_candidates", &options->max_candidates);
-  Finish(*options, &section);
+  CheckAndClose(*options, &section);
 }
 
 void ReadVoqSelector(YamlSection* top, SelectionOptions* options, ConsistencyOptions* consistency) {
@@ -235,8 +235,8 @@ void ReadVoqSelector(YamlSection* top, SelectionOptions* options, ConsistencyOpt
   YamlSection pairs = section.Section("consistency");
   pairs.Read("max_distance_m", &consistency->max_distance_m);
   pairs.ReadDegrees("max_angle_deg", &consistency->max_angle_rad);
-  Finish(*consistency, &pairs);
-  Finish(*options, &section);
+  CheckAndClose(*consistency, &pairs);
+  CheckAndClose(*options, &section);
 }
 
 void ReadExtrinsicEstimator(YamlSection* top,
@@ -249,7 +249,7 @@ void ReadExtrinsicEstimator(YamlSection* top,
   section.Read("max_iterations", &options->max_iterations);
   section.Read("max_z_score", &average->max_z_score);
   section.AddProblems(average->Problems());
-  Finish(*options, &section);
+  CheckAndClose(*options, &section);
 }
 
 void ReadLikelihood(YamlSection* refiner, LikelihoodOptions* options) {
@@ -269,7 +269,7 @@ void ReadLikelihood(YamlSection* refiner, LikelihoodOptions* options) {
   section.Read("lens_error", &options->lens_error);
   section.Read("corner_error_px", &options->corner_error_px);
   section.Read("max_iterations", &options->max_iterations);
-  Finish(*options, &section);
+  CheckAndClose(*options, &section);
 }
 
 void ReadExtrinsicRefiner(YamlSection* top, RefinerOptions* options) {
@@ -285,7 +285,7 @@ void ReadExtrinsicRefiner(YamlSection* top, RefinerOptions* options) {
   section.Read("huber_px", &options->reprojection.huber_px);
   section.Read("max_iterations", &options->reprojection.max_iterations);
   ReadLikelihood(&section, &options->likelihood);
-  Finish(options->reprojection, &section);
+  CheckAndClose(options->reprojection, &section);
 }
 
 void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
@@ -302,7 +302,7 @@ void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
   section.Read("min_range_m", &options->view.min_range_m);
   section.Read("max_image_width_px", &options->view.max_image_width_px);
   section.Read("image_blur_px", &options->view.image_blur_px);
-  Finish(*options, &section);
+  CheckAndClose(*options, &section);
 }
 
 void ReadDiagnosis(YamlSection* assessor, DiagnosisOptions* options) {
@@ -319,7 +319,7 @@ void ReadDiagnosis(YamlSection* assessor, DiagnosisOptions* options) {
   section.Read("min_samples", &options->min_samples);
   section.ReadDegrees("min_tilt_spread_deg", &options->min_tilt_spread_rad);
   section.ReadDegrees("min_view_spread_deg", &options->min_view_spread_rad);
-  Finish(*options, &section);
+  CheckAndClose(*options, &section);
 }
 
 void ReadAssessor(YamlSection* top, SceneCheckOptions* scene_check, DiagnosisOptions* diagnosis) {

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "messaging/convert_board.hpp"
+#include "messaging/encode.hpp"
 #include "voqcal/event_t.hpp"
 #include "voqcal/image_t.hpp"
 #include "voqcal/pointcloud2_t.hpp"
@@ -112,6 +113,7 @@ bool SampleCollectorNode::AreDetectorsPastFinish() const {
 }
 
 void SampleCollectorNode::SayFinished() {
+  CancelCapture();  // the operator wants no more
   is_finish_requested_ = false;
   is_finished_ = true;
   Announce(samples().empty() ? 0 : samples().back().utime, "finished", 0, "");
@@ -120,10 +122,7 @@ void SampleCollectorNode::SayFinished() {
 
 template <typename Message>
 void SampleCollectorNode::Keep(const Message& message, FrameBuffer* frames) {
-  SensorFrame frame{message.utime, {}};
-  frame.bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(frame.bytes.data(), 0, static_cast<int>(frame.bytes.size()));
-  frames->Add(std::move(frame));
+  frames->Add({message.utime, EncodeMessage(message)});
 }
 
 // A message that contradicts itself is a frame without a board, and costs that frame only.
@@ -150,17 +149,27 @@ void SampleCollectorNode::OnCommand(const command_t& message) {
   } else if (message.command == "finish") {
     RequestFinish();
   } else if (message.command == "reset") {
-    session_.Reset();
-    log_sha256_ = session_.Sha256();
-    picker_.SetKnown({});
-    is_finish_requested_ = false;
-    is_finished_ = false;
-    Announce(message.utime, "reset", 0, "");
-    PublishSamples();
+    Reset(message.utime);
   } else {
     Announce(message.utime, "rejected", 0, "unknown command '" + message.command + "'");
     Count("unknown command");
   }
+}
+
+void SampleCollectorNode::Reset(std::int64_t utime) {
+  session_.Reset();
+  log_sha256_ = session_.Sha256();
+  picker_.SetKnown({});
+  CancelCapture();
+  is_finish_requested_ = false;
+  is_finished_ = false;
+  Announce(utime, "reset", 0, "");
+  PublishSamples();
+}
+
+void SampleCollectorNode::CancelCapture() {
+  picker_.CancelCapture();
+  is_capture_requested_ = false;
 }
 
 void SampleCollectorNode::Discard(const command_t& message) {

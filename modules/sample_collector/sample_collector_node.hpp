@@ -53,6 +53,8 @@ class SampleCollectorNode : public Module {
   /// Both detectors are past what had come when "finish" was asked for.
   bool AreDetectorsPastFinish() const;
   void SayFinished();
+  void Reset(std::int64_t utime);
+  void CancelCapture();
   void Accept(const BoardSample& sample, const SampleScene& scene, const std::string& remark);
   /// With what was seen at its first frame, if both frames are at hand. The first sample after the
   /// command "capture" is the captured one (SamplePicker::RequestCapture).

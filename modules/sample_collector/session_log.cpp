@@ -8,18 +8,12 @@
 
 #include "messaging/bus.hpp"
 #include "messaging/convert_board.hpp"
+#include "messaging/encode.hpp"
 #include "voqcal/event_t.hpp"
 #include "voqcal/sample_t.hpp"
 
 namespace voqcal {
 namespace {
-
-template <typename Message>
-std::vector<std::uint8_t> Encode(const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
 
 template <typename Message>
 Message Decode(const LogEvent& event) {
@@ -60,7 +54,7 @@ std::int64_t SessionLog::Accept(BoardSample sample, const SampleScene& scene) {
     change.push_back(Event(kSceneSweepChannel, scene.sweep->utime, scene.sweep->bytes));
     change.push_back(Event(kSceneImageChannel, scene.image->utime, scene.image->bytes));
   }
-  change.push_back(Event(kSampleChannel, sample.utime, Encode(ToMessage(sample))));
+  change.push_back(Event(kSampleChannel, sample.utime, EncodeMessage(ToMessage(sample))));
   Append(change);
   return sample.id;
 }
@@ -75,7 +69,7 @@ std::optional<std::int64_t> SessionLog::Discard(std::int64_t id) {
   event.seq = revision_;
   event.kind = "discarded";
   event.sample_id = id;
-  Append({Event(kEventChannel, event.utime, Encode(event))});
+  Append({Event(kEventChannel, event.utime, EncodeMessage(event))});
   return id;
 }
 
@@ -84,7 +78,7 @@ void SessionLog::Reset() {
   event.utime = samples_.empty() ? 0 : samples_.back().utime;
   event.seq = revision_;
   event.kind = "reset";
-  Append({Event(kEventChannel, event.utime, Encode(event))});
+  Append({Event(kEventChannel, event.utime, EncodeMessage(event))});
 }
 
 LogEvent SessionLog::Event(const char* channel,

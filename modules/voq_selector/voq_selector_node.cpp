@@ -35,7 +35,10 @@ std::string VoqSelectorNode::State() const {
 
 bool VoqSelectorNode::Step() {
   if (!samples_ || (result_ && IsMadeFrom(*samples_, *result_))) return false;
-  result_ = Select(*samples_);
+  if (!CanRead([this] { result_ = Select(*samples_); })) {
+    samples_.reset();
+    return false;
+  }
   Count(result_->problem.empty() ? "selections" : "without a result");
   Republish();
   return false;

@@ -11,6 +11,7 @@
 #include "files/atomic_file.hpp"
 #include "fuzz/lcm_types.hpp"
 #include "messaging/convert.hpp"
+#include "messaging/encode.hpp"
 #include "messaging/log.hpp"
 #include "result/lidar_bias_yaml.hpp"
 #include "result/result_file.hpp"
@@ -138,8 +139,7 @@ constexpr std::size_t PlaceOf() {
 
 template <typename Message>
 void WriteMessage(const Corpora& corpora, const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  const std::vector<std::uint8_t> bytes = EncodeMessage(message);
   const std::string text(bytes.begin() + 8, bytes.end());  // without the fingerprint
   corpora.Write("lcm_messages",
                 Message::getTypeName(),

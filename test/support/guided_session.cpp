@@ -9,12 +9,11 @@
 #include "core/geometry/rigid.hpp"
 #include "core/selection/pose_variety.hpp"
 #include "core/simulation/lidar_simulator.hpp"
+#include "core/units.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal::test {
 namespace {
-
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 Room EmptyHall() {
   return Room(Box{{-9.0, -9.0, -1.5}, {9.0, 9.0, 3.0}, Material::kWall}, Props{});

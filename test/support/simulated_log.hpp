@@ -8,6 +8,7 @@
 #include "images/jpeg.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
+#include "messaging/encode.hpp"
 #include "messaging/log.hpp"
 #include "rig/rig.hpp"
 #include "support/synthetic_samples.hpp"
@@ -30,10 +31,7 @@ inline Rig TinySimulatedRig() {
 
 template <typename Message>
 void WriteEvent(const std::string& channel, const Message& message, LogWriter* log) {
-  LogEvent event{0, message.utime, channel, {}};
-  event.bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(event.bytes.data(), 0, static_cast<int>(event.bytes.size()));
-  log->Write(event);
+  log->Write({0, message.utime, channel, EncodeMessage(message)});
 }
 
 /// A recording of the simulated rig with nothing but the middles of its stops:

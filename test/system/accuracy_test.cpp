@@ -98,12 +98,30 @@ TEST_F(RealSession, WholeSweepsAndImagesReachTheHeldOutBound) {
   const std::size_t at = calibrate_.out.find(label) + label.size();
   const std::string in_sample = calibrate_.out.substr(at, calibrate_.out.find('\n', at) - at);
   EXPECT_THAT(evaluate.out, HasSubstr("samples: " + in_sample));
+  EXPECT_THAT(evaluate.out, HasSubstr("these are the samples that the result was made from"));
 }
 
 TEST_F(RealSession, TableOfFeaturesReachesItsBounds) {
   const YAML::Node result = Calibrate("--poses", data_ / "poses.csv");
   EXPECT_LE(MeanCentreMm(result, "average"), 9.0);  // the reference's own result
   EXPECT_LE(MeanCentreMm(result, "held_out"), 4.5);
+  EXPECT_THAT(calibrate_.out, HasSubstr(result["verdict"]["headline"].as<std::string>()));
+}
+
+TEST_F(RealSession, EvaluateNamesTheInverse) {
+  const std::string inverse = folder_.Write(
+      "inverse.yaml",
+      "T_camera_lidar: {quaternion_xyzw: [-0.5, 0.5, -0.5, 0.5], translation_m: [0, 0, 0]}\n");
+  const test::Outcome evaluate = test::Run({test::Program("evaluate"),
+                                            "--rig",
+                                            rig_,
+                                            "--poses",
+                                            data_ / "poses.csv",
+                                            "--extrinsic",
+                                            inverse});
+  EXPECT_EQ(evaluate.status, 1);
+  EXPECT_THAT(evaluate.err, HasSubstr("every board is behind the camera"));
+  EXPECT_THAT(evaluate.err, HasSubstr("is it the inverse?"));
 }
 
 }  // namespace

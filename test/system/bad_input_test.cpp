@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "files/atomic_file.hpp"
+#include "rig_status/status_page.hpp"
 #include "sample_collector/session_log.hpp"
 #include "support/simulated_log.hpp"
 #include "support/temporary_folder.hpp"
@@ -115,17 +116,7 @@ TEST_F(BadInput, RigFileWithAWrongKey) {
 
 TEST_F(BadInput, EveryModuleRefusesAWrongRigFile) {
   folder_.Write("rig.yaml", std::string(kRigText) + "colour: red\n");
-  for (const char* module : {"lidar_driver",
-                             "camera_driver",
-                             "lidar_board_detector",
-                             "camera_board_detector",
-                             "sample_collector",
-                             "voq_selector",
-                             "extrinsic_estimator",
-                             "extrinsic_refiner",
-                             "assessor",
-                             "pose_guide",
-                             "dashboard"}) {
+  for (const std::string& module : AllModuleNames()) {
     ExpectRefused({test::Program(module), "--rig", rig_, "--session", Path("session")},
                   AllOf(HasSubstr(rig_), HasSubstr("colour")));
   }

@@ -17,6 +17,7 @@
 #include "messaging/bus.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
+#include "messaging/wall_clock.hpp"
 #include "result/result_file.hpp"
 #include "support/temporary_folder.hpp"
 #include "system/system_test.hpp"
@@ -118,9 +119,7 @@ class FastSensors {
     const Clock::time_point start = Clock::now();
     for (std::int32_t tick = 0; !is_done(); ++tick) {  // 60 Hz
       std::this_thread::sleep_until(start + tick * std::chrono::microseconds(1000000 / 60));
-      const std::int64_t utime = std::chrono::duration_cast<std::chrono::microseconds>(
-                                     std::chrono::system_clock::now().time_since_epoch())
-                                     .count();
+      const std::int64_t utime = WallClockUs();
       if (tick % 2 == 0) {
         bus_.Publish(rig_.channels.camera_image, EncodedToMessage(jpeg_, utime, tick / 2));
       }

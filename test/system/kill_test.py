@@ -18,9 +18,7 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-MODULES = ["lidar_driver", "camera_driver", "lidar_board_detector", "camera_board_detector",
-           "sample_collector", "voq_selector", "extrinsic_estimator", "extrinsic_refiner", "assessor",
-           "pose_guide"]
+MODULES = [name for name in (ROOT / "modules/names.txt").read_text().split() if name != "dashboard"]
 
 
 def log_events(path):

@@ -12,6 +12,7 @@
 #include "files/atomic_file.hpp"
 #include "messaging/bus.hpp"
 #include "rig/rig.hpp"
+#include "rig_status/status_page.hpp"
 #include "sample_collector/sample_collector_node.hpp"
 #include "support/sightings.hpp"
 #include "support/synthetic_samples.hpp"
@@ -26,17 +27,7 @@ namespace {
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
-const std::vector<std::string> kModules = {"lidar_driver",
-                                           "camera_driver",
-                                           "lidar_board_detector",
-                                           "camera_board_detector",
-                                           "sample_collector",
-                                           "voq_selector",
-                                           "extrinsic_estimator",
-                                           "extrinsic_refiner",
-                                           "assessor",
-                                           "pose_guide",
-                                           "dashboard"};
+const std::vector<std::string> kModules = AllModuleNames();
 const std::vector<std::string> kTools = {"calibrate",
                                          "check_rig",
                                          "command",

@@ -37,9 +37,8 @@ done
 
 sed 's/num_poses: 40/num_poses: 6/' "$root/config/rigs/simulated_vlp16.yaml" >"$folder/stays.yaml"
 sed 's/ttl=0/ttl=1/' "$folder/stays.yaml" >"$folder/rig.yaml"
-sensors=lidar_driver,camera_driver
-rest=lidar_board_detector,camera_board_detector,sample_collector,voq_selector
-rest+=,extrinsic_estimator,extrinsic_refiner,assessor,pose_guide
+sensors=$(grep '_driver$' "$root/modules/names.txt" | paste -sd,)
+rest=$(grep -v '_driver$\|^dashboard$' "$root/modules/names.txt" | paste -sd,)
 
 echo "== ttl=0: the sensors' host is not heard =="
 on_sensors "$root/tools/up" "$folder/stays.yaml" --session "$folder/sensors" --only $sensors

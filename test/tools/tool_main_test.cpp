@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,17 @@ TEST(RunToolDeathTest, TellsThatOutputWasLostBeforeTheEnd) {
   EXPECT_EXIT(RunOnAFullDisk({}, [&] { std::cout << line << '\n'; }), kFailed, error);
   EXPECT_EXIT(RunOnAFullDisk({"--help"}, [] {}), kFailed, error);
   EXPECT_EXIT(RunOnAFullDisk({"--version"}, [] {}), kFailed, error);
+}
+
+TEST(RunTool, TellsAnUnmetDemandFromAFailure) {
+  const char* flags[] = {"tool"};
+  const auto status_of = [&flags](const std::function<void()>& body) {
+    CLI::App app("Does.", "tool");
+    return RunTool(&app, 1, flags, body);
+  };
+  EXPECT_EQ(status_of([] {}), 0);
+  EXPECT_EQ(status_of([] { throw std::runtime_error("broken"); }), 1);
+  EXPECT_EQ(status_of([] { throw DemandNotMet("not good"); }), 3);
 }
 
 TEST(RunToolDeathTest, TellsWhyOutputCannotBeWritten) {

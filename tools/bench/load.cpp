@@ -20,6 +20,7 @@
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/pacer.hpp"
+#include "messaging/wall_clock.hpp"
 #include "rig/rig.hpp"
 #include "voqcal/camera_board_t.hpp"
 #include "voqcal/lidar_board_t.hpp"
@@ -34,12 +35,6 @@ struct LoadArgs {
   double rate_share = 1.0;           ///< Of the rig's rates.
   std::vector<std::string> watched;  ///< NAME=PID
 };
-
-std::int64_t NowUs() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 /// What the sensors see at each stop of the board. Sent again and again, so that the sender's cost
 /// is a driver's and not the simulator's.
@@ -81,7 +76,7 @@ void SendSweeps(const Rig& rig, const Stops& stops, std::atomic<bool>* is_done, 
   SendAt(rig.lidar_driver.rate_hz, *is_done, [&](std::int64_t n) {
     const std::size_t stop = StopOf(n, rig.lidar_driver.rate_hz, stops.sweeps.size());
     bus.Publish(rig.channels.lidar_points,
-                ToMessage(stops.sweeps[stop], NowUs(), static_cast<std::int32_t>(n)));
+                ToMessage(stops.sweeps[stop], WallClockUs(), static_cast<std::int32_t>(n)));
     load->num_sent = n + 1;
   });
 }
@@ -90,7 +85,7 @@ void SendImages(const Rig& rig, const Stops& stops, std::atomic<bool>* is_done, 
   Bus bus(rig.lcm_url);
   SendAt(rig.camera_driver.rate_hz, *is_done, [&](std::int64_t n) {
     const std::size_t stop = StopOf(n, rig.camera_driver.rate_hz, stops.jpegs.size());
-    bus.Publish(rig.channels.camera_image, EncodedToMessage(stops.jpegs[stop], NowUs(), n));
+    bus.Publish(rig.channels.camera_image, EncodedToMessage(stops.jpegs[stop], WallClockUs(), n));
     load->num_sent = n + 1;
   });
 }
@@ -104,11 +99,11 @@ void Run(const LoadArgs& args) {
   Bus bus(rig.lcm_url);
   bus.Subscribe<lidar_board_t>(
       rig.channels.lidar_board, Queue::kEvery, [&report](const lidar_board_t& message) {
-        report.lidar.Answer(message.utime, NowUs());
+        report.lidar.Answer(message.utime, WallClockUs());
       });
   bus.Subscribe<camera_board_t>(
       rig.channels.camera_board, Queue::kEvery, [&report](const camera_board_t& message) {
-        report.camera.Answer(message.utime, NowUs());
+        report.camera.Answer(message.utime, WallClockUs());
       });
   bus.Subscribe<module_status_t>(
       rig.channels.module_status, Queue::kEvery, [&report](const module_status_t& message) {

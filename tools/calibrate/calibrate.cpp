@@ -17,6 +17,7 @@
 #include "files/atomic_file.hpp"
 #include "messaging/log.hpp"
 #include "report/write_report.hpp"
+#include "result/verdict_yaml.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {
@@ -28,6 +29,7 @@ struct CalibrateArgs {
   BagInput bag;  // instead of input.log
   std::filesystem::path out;
   bool is_json = false;
+  std::string demand;  ///< "usable" or "good"; empty: none.
 };
 
 std::string Given(const CalibrateArgs& args) {
@@ -55,6 +57,25 @@ std::string EarlierResultIn(const std::filesystem::path& folder) {
   return std::filesystem::exists(result) ? "; " + result.string() + " is of an earlier run" : "";
 }
 
+void Print(const CalibrateArgs& args, const OfflineRun& run, bool has_report) {
+  if (args.is_json) {
+    std::cout << ReadWholeFile(args.out / kResultJsonName);
+    return;
+  }
+  std::cout << Summary(*run.assessor().result()) << "frames\n  " << CountsOf(run) << "\nwritten\n  "
+            << (args.out / kResultName).string() << "\n  " << (args.out / kSamplesLogName).string()
+            << "\n  " << (args.out / kResultJsonName).string() << '\n';
+  if (has_report) std::cout << "  " << (args.out / kReportName).string() << '\n';
+}
+
+/// @throws DemandNotMet unless the verdict is as good as was demanded.
+void RequireVerdict(const Verdict& verdict, const std::string& demand) {
+  if (demand.empty()) return;
+  const Grade least = demand == "good" ? Grade::kGood : Grade::kLook;
+  if (verdict.grade <= least) return;
+  throw DemandNotMet("the result is not " + demand + ", as --require demands: " + verdict.headline);
+}
+
 void RunCalibrate(const CalibrateArgs& args) {
   const Rig rig = LoadRig(args.rig);
   if (std::filesystem::exists(args.out) && !std::filesystem::is_directory(args.out)) {
@@ -75,15 +96,8 @@ void RunCalibrate(const CalibrateArgs& args) {
   const std::string report_problem = WriteReport(rig, *run, scratch.path());
   Deliver(scratch.path(), args.out);
   if (!report_problem.empty()) spdlog::warn("no {}: {}", kReportName, report_problem);
-  if (args.is_json) {
-    std::cout << ReadWholeFile(args.out / kResultJsonName);
-    return;
-  }
-  std::cout << Summary(*run->assessor().result()) << "frames\n  " << CountsOf(*run)
-            << "\nwritten\n  " << (args.out / kResultName).string() << "\n  "
-            << (args.out / kSamplesLogName).string() << "\n  "
-            << (args.out / kResultJsonName).string() << '\n';
-  if (report_problem.empty()) std::cout << "  " << (args.out / kReportName).string() << '\n';
+  Print(args, *run, report_problem.empty());
+  RequireVerdict(VerdictOf(*run->assessor().result()), args.demand);
 }
 
 }  // namespace
@@ -121,5 +135,9 @@ int main(int argc, char** argv) {
          "Folder for extrinsic.yaml, result.json, report.html and samples.lcm; made if missing")
       ->required();
   app.add_flag("--json", args.is_json, "Print result.json instead of a summary");
+  app.add_option("--require",
+                 args.demand,
+                 "End with exit status 3 unless the verdict is at least this: usable or good")
+      ->check(CLI::IsMember({"usable", "good"}));
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::RunCalibrate(args); });
 }

@@ -1,5 +1,6 @@
 // evaluate: scores an extrinsic on poses that it never saw.
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -13,6 +14,8 @@
 #include "common/tool_main.hpp"
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/selection/consistency.hpp"
+#include "files/atomic_file.hpp"
+#include "files/sha256.hpp"
 #include "result/lidar_bias_yaml.hpp"
 #include "result/result_file.hpp"
 #include "rig/rig.hpp"
@@ -39,6 +42,34 @@ void PrintPoses(const std::vector<const BoardSample*>& samples, const SceneScore
   }
 }
 
+bool IsInImage(const BoardSample& sample,
+               const CameraModel& camera,
+               const Eigen::Isometry3d& T_camera_lidar) {
+  const Eigen::Vector3d centre_camera_m = T_camera_lidar * sample.lidar.pose.centre_m;
+  return camera.IsInFront(centre_camera_m) && camera.Contains(camera.Project(centre_camera_m));
+}
+
+/// The camera saw every board: a transform that puts none into its image is another one.
+void RequireBoardsInImage(const std::vector<const BoardSample*>& samples,
+                          const CameraModel& camera,
+                          const Eigen::Isometry3d& T_camera_lidar,
+                          const std::filesystem::path& file) {
+  const bool is_any = std::any_of(samples.begin(), samples.end(), [&](const BoardSample* sample) {
+    return IsInImage(*sample, camera, T_camera_lidar);
+  });
+  if (is_any || samples.empty()) return;
+  throw std::runtime_error(file.string() +
+                           ": by it every board is behind the camera or outside its image: is it "
+                           "the inverse? T_camera_lidar takes lidar coordinates to the camera's");
+}
+
+/// Whether the file says that it was made from these very samples.
+bool IsMadeFrom(const std::filesystem::path& samples_log, const std::filesystem::path& extrinsic) {
+  const std::string text = ReadWholeFile(extrinsic);
+  if (text.find("made_from:") == std::string::npos) return false;  // another program's
+  return LogSha256Of(text, extrinsic.string()) == Sha256OfFile(samples_log);
+}
+
 void Evaluate(const EvaluateArgs& args) {
   const Rig rig = LoadRig(args.rig);
   const Eigen::Isometry3d T_camera_lidar = ReadExtrinsic(args.extrinsic);
@@ -52,6 +83,7 @@ void Evaluate(const EvaluateArgs& args) {
   const Consistency consistency = FindConsistent(run->samples(), rig.consistency);
   const std::vector<BoardSample> consistent = ConsistentSamples(run->samples(), consistency);
   const std::vector<const BoardSample*> samples = SamplesWithout(consistent, {});
+  RequireBoardsInImage(samples, rig.camera, T_camera_lidar, args.extrinsic);
   const LidarBias bias = ReadLidarBias(args.extrinsic);
   const SceneScore score = ScoreCorrected(samples, rig.camera, T_camera_lidar, bias);
   PrintPoses(samples, score);
@@ -61,6 +93,10 @@ void Evaluate(const EvaluateArgs& args) {
                 each.reason.c_str());
   }
   std::printf("%zu samples: %s\n", samples.size(), Summary(score).c_str());
+  if (IsMadeFrom(scratch.path() / kSamplesLogName, ResultFileAt(args.extrinsic))) {
+    std::puts(
+        "these are the samples that the result was made from: its errors on others are larger");
+  }
 }
 
 }  // namespace

@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "core/format.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / M_PI;
 
 std::string Tenths(double value) { return std::isnan(value) ? "-" : Format("%.1f", value); }
 

@@ -11,6 +11,7 @@ foreach(script modules/launch_module ${launch_scripts})
   get_filename_component(folder ${script} DIRECTORY)
   install(PROGRAMS ${script} DESTINATION ${folder})
 endforeach()
+install(FILES modules/names.txt DESTINATION modules)
 install(PROGRAMS tools/up tools/status tools/down tools/run_rig tools/record tools/spy tools/isolated
                  tools/import_ros tools/export_mcap tools/voqcal
   DESTINATION tools)

@@ -12,6 +12,7 @@
 #include "common/tool_main.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/made_from.hpp"
+#include "messaging/wall_clock.hpp"
 #include "rig/rig.hpp"
 #include "voqcal/assessment_t.hpp"
 #include "voqcal/command_t.hpp"
@@ -42,9 +43,7 @@ struct CommandArgs {
 /// @return the command's utime.
 std::int64_t Send(const CommandArgs& args, const Rig& rig, Bus* bus) {
   command_t message{};
-  message.utime = std::chrono::duration_cast<std::chrono::microseconds>(
-                      std::chrono::system_clock::now().time_since_epoch())
-                      .count();
+  message.utime = WallClockUs();
   message.command = args.command;
   message.sample_id = args.sample_id;
   bus->Publish(rig.channels.calib_command, message);

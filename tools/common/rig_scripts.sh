@@ -15,10 +15,9 @@ else
   how_to_build="install the package again"
 fi
 
-drivers=(lidar_driver camera_driver)
-# In the order of the flow; every one of them reads what a driver, or one before it, says.
-readers=(lidar_board_detector camera_board_detector sample_collector voq_selector
-  extrinsic_estimator extrinsic_refiner assessor pose_guide dashboard)
+# In the order of the flow; every reader reads what a driver, or one before it, says.
+mapfile -t drivers < <(grep '_driver$' "$root/modules/names.txt")
+mapfile -t readers < <(grep -v '_driver$' "$root/modules/names.txt")
 
 fail() {  # MESSAGE [STATUS]
   echo "$(basename "$0"): $1" >&2

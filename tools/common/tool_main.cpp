@@ -25,11 +25,17 @@ void FlushOutput() {
   throw std::runtime_error("standard output: cannot be written" + cause);
 }
 
+constexpr int kUsageError = 2;
+constexpr int kDemandNotMet = 3;
+
 /// @return the exit status of `steps` and of what they print.
 int StatusOf(const std::string& program, const std::function<void()>& steps) {
   try {
     steps();
     FlushOutput();
+  } catch (const DemandNotMet& unmet) {
+    PrintError(program, unmet.what());
+    return kDemandNotMet;
   } catch (const std::exception& error) {
     PrintError(program, error.what());
     return EXIT_FAILURE;
@@ -40,7 +46,6 @@ int StatusOf(const std::string& program, const std::function<void()>& steps) {
 }  // namespace
 
 int RunTool(CLI::App* app, int argc, const char* const* argv, const std::function<void()>& body) {
-  constexpr int kUsageError = 2;
   app->set_version_flag("--version", VOQCAL_VERSION);
   try {
     app->parse(argc, argv);

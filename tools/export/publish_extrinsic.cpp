@@ -11,6 +11,7 @@
 #include "common/tool_main.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/convert_result.hpp"
+#include "messaging/wall_clock.hpp"
 #include "result/result_file.hpp"
 #include "rig/rig.hpp"
 
@@ -26,12 +27,6 @@ struct PublishArgs {
 
 volatile std::sig_atomic_t is_stopped = 0;
 
-std::int64_t NowUtime() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 // Once a second, as all state of voqcal: whoever starts late has it a second later. The stamp is
 // the present: bot_frames takes a transform to hold from its stamp on.
 void Publish(const PublishArgs& args) {
@@ -44,7 +39,7 @@ void Publish(const PublishArgs& args) {
   std::printf("%s: p_lidar = q * p_camera + t (rigid_transform_t)\n", channel.c_str());
   std::fflush(stdout);
   do {
-    bus.Publish(channel, RigidTransformMessage(T_lidar_camera, NowUtime()));
+    bus.Publish(channel, RigidTransformMessage(T_lidar_camera, WallClockUs()));
     if (args.is_once) return;
     std::this_thread::sleep_for(std::chrono::seconds(1));
   } while (is_stopped == 0);

@@ -11,13 +11,12 @@
 
 #include "core/likelihood/likelihood.hpp"
 #include "core/median.hpp"
+#include "core/units.hpp"
 #include "figures/figures.hpp"
 #include "figures/simulated_session.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
 struct AccuracyArgs {
   std::filesystem::path rig;
@@ -59,7 +58,7 @@ void PrintAccuracy(const AccuracyArgs& args) {
   std::vector<double> rotations_deg, translations_mm;
   double sum_normalised = 0.0;
   for (const Run& run : runs) {
-    rotations_deg.push_back(kDegreesPerRadian * run.error.head<3>().norm());
+    rotations_deg.push_back(kDegPerRad * run.error.head<3>().norm());
     translations_mm.push_back(1e3 * run.error.tail<3>().norm());
     sum_normalised += run.error.cwiseQuotient(run.uncertainty.by_likelihood).squaredNorm();
   }
@@ -96,7 +95,7 @@ void PrintCoverage(const AccuracyArgs& args) {
                 kNames[static_cast<std::size_t>(i)],
                 100.0 * num_inside / num_runs,
                 std::sqrt(sum_squares / num_runs),
-                (i < 3 ? kDegreesPerRadian : 1e3) * sum_sigma / num_runs);
+                (i < 3 ? kDegPerRad : 1e3) * sum_sigma / num_runs);
   }
   std::printf("all        %5.1f%%\n", 100.0 * sum / (6.0 * num_runs));
 }

@@ -7,6 +7,7 @@
 
 #include "assessor/session_views.hpp"
 #include "core/assessment/scene_check.hpp"
+#include "core/units.hpp"
 #include "figures/figures.hpp"
 #include "result/result_file.hpp"
 #include "rig/rig.hpp"
@@ -14,8 +15,6 @@
 
 namespace voqcal {
 namespace {
-
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 struct Args {
   std::filesystem::path rig;

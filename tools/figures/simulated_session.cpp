@@ -33,11 +33,7 @@ std::vector<BoardSample> SimulateSession(const Rig& rig, const SimulationOptions
     sample.camera = *camera;
     samples.push_back(sample);
   }
-  std::vector<BoardSample> consistent;
-  for (const int i : FindConsistent(samples, rig.consistency).consistent) {
-    consistent.push_back(samples[static_cast<std::size_t>(i)]);
-  }
-  return consistent;
+  return ConsistentSamples(samples, FindConsistent(samples, rig.consistency));
 }
 
 }  // namespace voqcal

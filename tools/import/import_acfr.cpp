@@ -19,6 +19,7 @@
 #include "files/point_cloud_file.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
+#include "messaging/encode.hpp"
 #include "messaging/log.hpp"
 #include "rig/frame_folder.hpp"
 #include "rig/frame_pairing.hpp"
@@ -35,13 +36,6 @@ struct ImportArgs {
   std::string pair = "names";
 };
 
-template <typename Message>
-std::vector<std::uint8_t> Encode(const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
-
 // Numbers the events; their time is the frame's, so that lcm-logplayer paces them.
 class EventWriter {
  public:
@@ -49,7 +43,7 @@ class EventWriter {
 
   template <typename Message>
   void Write(const std::string& channel, const Message& message) {
-    writer_.Write({next_number_++, message.utime, channel, Encode(message)});
+    writer_.Write({next_number_++, message.utime, channel, EncodeMessage(message)});
   }
   void Flush() { writer_.Flush(); }
 

@@ -21,6 +21,13 @@ namespace {
 
 constexpr int kSubPixelBits = 4;  // cv's drawing takes fixed-point coordinates
 
+/// The nearest whole number. What is almost beside the camera projects beyond any picture: such
+/// coordinates stop where cv's drawing can still work with them.
+int ToInt(double coordinate) {
+  constexpr double kFarOut = 1 << 26;
+  return static_cast<int>(std::lround(std::clamp(coordinate, -kFarOut, kFarOut)));
+}
+
 /// A part of the image, scaled: pixel (0, 0) is the centre of the top-left pixel in both.
 struct View {
   cv::Rect part_px;
@@ -29,8 +36,7 @@ struct View {
   cv::Point ToFixed(const Eigen::Vector2d& pixel_px) const {
     const double x = (pixel_px.x() - part_px.x + 0.5) * scale - 0.5;
     const double y = (pixel_px.y() - part_px.y + 0.5) * scale - 0.5;
-    return {static_cast<int>(std::lround(x * (1 << kSubPixelBits))),
-            static_cast<int>(std::lround(y * (1 << kSubPixelBits)))};
+    return {ToInt(x * (1 << kSubPixelBits)), ToInt(y * (1 << kSubPixelBits))};
   }
 };
 
@@ -123,11 +129,9 @@ View NearView(const std::vector<Eigen::Vector2d>& outline_px, const cv::Size& im
   const double side_px = (1 + 2 * kMargin) * box.sizes().maxCoeff();
   const Eigen::Vector2d corner_px = box.center() - Eigen::Vector2d::Constant(side_px / 2);
   View view;
-  view.part_px = cv::Rect(static_cast<int>(corner_px.x()),
-                          static_cast<int>(corner_px.y()),
-                          static_cast<int>(side_px),
-                          static_cast<int>(side_px)) &
-                 cv::Rect({}, image_size);
+  view.part_px =
+      cv::Rect(ToInt(corner_px.x()), ToInt(corner_px.y()), ToInt(side_px), ToInt(side_px)) &
+      cv::Rect({}, image_size);
   view.scale = kSizePx / side_px;
   return view;
 }
@@ -148,7 +152,7 @@ cv::Vec3b RangeColourBgr(double range_m) {
     cv::applyColorMap(levels, colours, cv::COLORMAP_TURBO);
     return colours;
   }();
-  const double share = std::log(range_m / kNearRangeM) / std::log(kFarRangeM / kNearRangeM);
+  const double share = std::log(kFarRangeM / range_m) / std::log(kFarRangeM / kNearRangeM);
   return kColours.at<cv::Vec3b>(0,
                                 static_cast<int>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
 }
@@ -170,8 +174,9 @@ cv::Mat DrawBoard(const PosePicture& scene,
   const cv::Scalar magenta(220, 40, 240);
   const auto by_camera_px =
       OutlinePx(scene.sample.camera.pose, Eigen::Isometry3d::Identity(), camera);
+  if (by_camera_px.empty()) return {};
   const View view = NearView(by_camera_px, scene.image.size());
-  if (by_camera_px.empty() || view.part_px.empty()) return {};
+  if (view.part_px.empty()) return {};
   cv::Mat picture = Cut(scene.image, view);
   DrawPoints(scene.sweep_lidar_m, camera, T_camera_lidar, view, 2.2, &picture);
   const auto by_lidar_px = OutlinePx(scene.sample.lidar.pose, T_camera_lidar, camera);

@@ -31,10 +31,10 @@ cv::Mat DrawBoard(const PosePicture& scene,
                   const CameraModel& camera,
                   const Eigen::Isometry3d& T_camera_lidar);
 
-/// Points are coloured by their range, from kNearRange_m (blue) to kFarRange_m (red) on a
-/// logarithmic scale (OpenCV's "turbo").
+/// Points are coloured by their range, from kNearRangeM (red) to kFarRangeM (blue) on a logarithmic
+/// scale (OpenCV's "turbo"), the way and as far as on the dashboard's page.
 inline constexpr double kNearRangeM = 1.0;
-inline constexpr double kFarRangeM = 20.0;
+inline constexpr double kFarRangeM = 30.0;
 cv::Vec3b RangeColourBgr(double range_m);
 
 /// Writes the pictures of every sample whose scene is in samples.lcm: NNNN_scene.jpg (by the

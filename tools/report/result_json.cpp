@@ -15,6 +15,7 @@
 #include "core/assessment/verdict.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/selection/voq.hpp"
+#include "core/units.hpp"
 #include "files/number_text.hpp"
 #include "messaging/convert_result.hpp"
 #include "report/overlays.hpp"
@@ -24,8 +25,6 @@ namespace voqcal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegPerRad = 180.0 / M_PI;
 
 Json FromScalar(const YAML::Node& node) {
   const std::string& text = node.Scalar();
@@ -223,16 +222,6 @@ Json FramesPart(const OfflineRun& run) {
   return {{"counts", counts}, {"rejected", rejected}, {"losses", run.Losses()}};
 }
 
-Json VerdictPart(const CalibrationResult& result) {
-  const Verdict verdict = VerdictOf(result);
-  Json checks = Json::array();
-  for (const VerdictCheck& check : verdict.checks) {
-    checks.push_back(
-        {{"name", check.name}, {"grade", ToString(check.grade)}, {"text", check.text}});
-  }
-  return {{"grade", ToString(verdict.grade)}, {"headline", verdict.headline}, {"checks", checks}};
-}
-
 /// The colours of the pictures' points at equal steps from kNearRangeM to kFarRangeM, as "#rrggbb".
 Json RangeColours() {
   constexpr int kNumSteps = 16;
@@ -251,8 +240,9 @@ Json RangeColours() {
 
 std::string ResultJson(const Rig& rig, const OfflineRun& run) {
   const CalibrationResult& result = *run.assessor().result();
-  const Json json = {{"verdict", VerdictPart(result)},
-                     {"result", FromYaml(YAML::Load(ToYaml(result)))},
+  const Json from_yaml = FromYaml(YAML::Load(ToYaml(result)));
+  const Json json = {{"verdict", from_yaml["verdict"]},
+                     {"result", from_yaml},
                      {"rig", RigPart(rig)},
                      {"samples", SamplesPart(rig, run)},
                      {"sets", SetsPart(rig, run)},

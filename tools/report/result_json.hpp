@@ -15,7 +15,7 @@ namespace voqcal {
 ///   PoseScore) by the average, by the refined extrinsic and by the one refined without it
 /// - sets: the chosen sets with what each gave, as a difference from the average; the VOQ of all
 ///   sets as a histogram (null beyond two million sets)
-/// - range_colours: of the report's pictures, from 1 to 20 m
+/// - range_colours: of the report's pictures, from 1 to 30 m
 /// - frames: what each module counted, and the frames that the collector rejected, with reasons
 ///
 /// Numbers that are not known are null. The same run gives the same bytes.

@@ -1,6 +1,8 @@
 #include "rig_status/status_page.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
 #include <utility>
 
 #include "core/format.hpp"
@@ -64,17 +66,8 @@ std::string EventText(const event_t& event) {
 }  // namespace
 
 std::vector<std::string> AllModuleNames() {
-  return {"lidar_driver",
-          "camera_driver",
-          "lidar_board_detector",
-          "camera_board_detector",
-          "sample_collector",
-          "voq_selector",
-          "extrinsic_estimator",
-          "extrinsic_refiner",
-          "assessor",
-          "pose_guide",
-          "dashboard"};
+  std::istringstream names(VOQCAL_MODULES);  // modules/names.txt
+  return {std::istream_iterator<std::string>(names), {}};
 }
 
 StatusPage::StatusPage(std::vector<std::string> modules, std::vector<std::string> ended)

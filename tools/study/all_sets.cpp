@@ -6,12 +6,12 @@
 #include "core/board/metres_per_pixel.hpp"
 #include "core/selection/scene_error.hpp"
 #include "core/selection/voq.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMillimetresPerMetre = 1000.0;
 
 using Three = std::array<const BoardSample*, 3>;
 
@@ -67,7 +67,7 @@ SceneCentres::SceneCentres(const std::vector<BoardSample>& samples, const Camera
     const BoardPose& seen = sample.camera.pose;
     centres_.push_back({sample.lidar.pose.centre_m,
                         camera.Project(seen.centre_m),
-                        kMillimetresPerMetre * MetresPerPixel(seen, camera)});
+                        kMmPerM * MetresPerPixel(seen, camera)});
   }
 }
 

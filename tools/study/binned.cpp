@@ -2,13 +2,11 @@
 
 #include "core/geometry/rigid.hpp"
 #include "core/median.hpp"
+#include "core/units.hpp"
 #include "study/statistics.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr double kDegreesPerRadian = 57.295779513082320877;
-constexpr double kMillimetresPerMetre = 1000.0;
 
 using Members = std::vector<const StudiedSet*>;
 
@@ -44,8 +42,8 @@ StudyBin BinOf(const Members& members, double StudiedSet::*figure) {
   StudyBin bin;
   bin.num_sets = static_cast<int>(members.size());
   bin.figure = MeanOf(members, figure);
-  bin.rotation_spread_deg = kDegreesPerRadian * spread.head<3>().norm();
-  bin.translation_spread_mm = kMillimetresPerMetre * spread.tail<3>().norm();
+  bin.rotation_spread_deg = kDegPerRad * spread.head<3>().norm();
+  bin.translation_spread_mm = kMmPerM * spread.tail<3>().norm();
   bin.error_mm = Mean(errors_mm);
   bin.median_error_mm = Median(errors_mm);
   bin.deviation_mm = MeanOf(members, &StudiedSet::deviation_mm);

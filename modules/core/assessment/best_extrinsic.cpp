@@ -71,13 +71,15 @@ MethodTrial TryLikelihood(const std::vector<const BoardSample*>& samples,
   return trial;
 }
 
-// The named one; else the least error. Without any score to go by, the average.
+// The named one; else the least error that is known. Without any to go by, the average.
 const MethodTrial& Choose(const std::vector<MethodTrial>& trials,
                           const std::optional<RefineMethod>& named) {
   const MethodTrial* best = &trials.front();
   for (const MethodTrial& trial : trials) {
     if (named && trial.method == *named) return trial;
-    if (trial.ErrorMm() < best->ErrorMm()) best = &trial;
+    const bool is_better = std::isnan(best->ErrorMm()) ? !std::isnan(trial.ErrorMm())
+                                                       : trial.ErrorMm() < best->ErrorMm();
+    if (is_better) best = &trial;
   }
   return *best;
 }

@@ -9,11 +9,11 @@
 #include "core/geometry/rigid.hpp"
 #include "core/median.hpp"
 #include "core/problems.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kLeastForModels = 5;  // of 6 residuals each, for 6 + 2 parameters
 
 // Takes the samples that stand out from the equations, the worst first: each one pulls the fit.

@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "core/estimation/left_perturbation.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
 constexpr std::array<double, 6> kRangesM = {1, 2, 5, 10, 20, 50};
-constexpr double kMillimetresPerMetre = 1000;
 
 struct PointError {
   double px = 0;
@@ -24,7 +24,7 @@ PointError ErrorAt(const Eigen::Vector3d& point_camera_m,
                    const CameraModel& camera) {
   const PointErrorForms forms = ErrorFormsAt(point_camera_m, T_camera_lidar, camera);
   return {std::sqrt((forms.px2 * covariance).trace()),
-          kMillimetresPerMetre * std::sqrt((forms.m2 * covariance).trace())};
+          kMmPerM * std::sqrt((forms.m2 * covariance).trace())};
 }
 
 }  // namespace

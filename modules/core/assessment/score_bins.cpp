@@ -58,7 +58,7 @@ std::vector<ScoreBin> BinByRange(const std::vector<const BoardSample*>& samples,
       "up to 2 m", "2 to 3 m", "3 to 4 m", "4 to 6 m", "6 to 10 m", "beyond 10 m"};
   return Sorted(samples, score, names, [&kUpToM](const BoardSample& sample) {
     const double range_m = sample.camera.pose.centre_m.norm();
-    return static_cast<int>(std::lower_bound(kUpToM.begin(), kUpToM.end(), range_m) -
+    return static_cast<int>(std::upper_bound(kUpToM.begin(), kUpToM.end(), range_m) -
                             kUpToM.begin());
   });
 }

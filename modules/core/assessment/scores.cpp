@@ -5,12 +5,10 @@
 
 #include "core/board/half_turn.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr double kMillimetresPerMetre = 1000.0;
-constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
 double MeanCornerDistanceM(const BoardPose& pose_lidar,
                            const BoardPose& pose_camera,
@@ -61,10 +59,9 @@ PoseScore ScorePose(const BoardSample& sample,
   if (!camera.IsInFront(centre_camera_m) || !camera.IsInFront(seen.centre_m)) return {};
   PoseScore score;
   score.centre_px = (camera.Project(centre_camera_m) - camera.Project(seen.centre_m)).norm();
-  score.centre_mm = kMillimetresPerMetre * MetresPerPixel(seen, camera) * score.centre_px;
-  score.corner_mm = kMillimetresPerMetre * MeanCornerDistanceM(lidar, seen, T_camera_lidar);
-  score.normal_deg =
-      kDegreesPerRadian * AngleBetween(T_camera_lidar.linear() * lidar.normal, seen.normal);
+  score.centre_mm = kMmPerM * MetresPerPixel(seen, camera) * score.centre_px;
+  score.corner_mm = kMmPerM * MeanCornerDistanceM(lidar, seen, T_camera_lidar);
+  score.normal_deg = kDegPerRad * AngleBetween(T_camera_lidar.linear() * lidar.normal, seen.normal);
   return score;
 }
 

@@ -171,7 +171,7 @@ std::string ToString(Grade grade) {
   return "bad";
 }
 
-Verdict Judge(const Evidence& evidence) {
+Verdict VerdictOf(const Evidence& evidence) {
   Verdict verdict;
   AddFit(evidence, &verdict.checks);
   AddCertainty(evidence, &verdict.checks);

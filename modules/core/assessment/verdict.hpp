@@ -41,7 +41,7 @@ struct Verdict {
   std::vector<VerdictCheck> checks;
 };
 
-Verdict Judge(const Evidence& evidence);
+Verdict VerdictOf(const Evidence& evidence);
 
 /// Of the first of the findings, or of their messages, about which something is to be done; empty
 /// if there is none.

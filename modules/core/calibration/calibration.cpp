@@ -1,19 +1,18 @@
 #include "core/calibration/calibration.hpp"
 
-#include <cmath>
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
 Evidence EvidenceOf(const Calibration& calibration) {
-  constexpr double kDegreesPerRadian = 180.0 / M_PI;
   const Vector6d sigma = calibration.covariance.diagonal().cwiseSqrt();
   Evidence evidence;
   evidence.held_out_mm = calibration.held_out.centre_mm.mean;
   evidence.in_sample_mm = calibration.in_sample.centre_mm.mean;
   evidence.normal_deg = calibration.held_out.normal_deg.mean;
-  evidence.sigma_deg = kDegreesPerRadian * sigma.head<3>().maxCoeff();
-  evidence.sigma_mm = 1e3 * sigma.tail<3>().maxCoeff();
+  evidence.sigma_deg = kDegPerRad * sigma.head<3>().maxCoeff();
+  evidence.sigma_mm = kMmPerM * sigma.tail<3>().maxCoeff();
   evidence.num_used = static_cast<int>(calibration.used_ids.size());
   evidence.num_samples =
       static_cast<int>(calibration.used_ids.size() + calibration.rejected.size());
@@ -26,6 +25,6 @@ Evidence EvidenceOf(const Calibration& calibration) {
 
 }  // namespace
 
-Verdict VerdictOf(const Calibration& calibration) { return Judge(EvidenceOf(calibration)); }
+Verdict VerdictOf(const Calibration& calibration) { return VerdictOf(EvidenceOf(calibration)); }
 
 }  // namespace voqcal

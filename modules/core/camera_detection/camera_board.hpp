@@ -40,8 +40,7 @@ struct CameraBoardOptions {
 /// @param image  8-bit, 1 or 3 channels (BGR), of the camera's size.
 /// @return the board, or why none was found.
 /// @throws std::invalid_argument if `image` has another size or type, or the camera, board or
-/// options
-///     have Problems().
+///     options have Problems().
 Expected<CameraBoard, CameraBoardMiss> DetectCameraBoard(const cv::Mat& image,
                                                          const CameraModel& camera,
                                                          const BoardSpec& board,

@@ -12,6 +12,7 @@
 
 #include "core/estimation/refine_terms.hpp"
 #include "core/problems.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
@@ -192,11 +193,10 @@ std::string RefinedExtrinsic::Summary() const {
   std::ostringstream text;
   text << "refinement " << ToString(status);
   if (!IsUsable()) return text.str();
-  constexpr double kDegreesPerRadian = 180.0 / M_PI;
   const Vector6d sigma = covariance.diagonal().cwiseSqrt();
   text.precision(3);
   text << ": centres " << reprojection_rms_px << " px RMS, 1 sigma up to "
-       << kDegreesPerRadian * sigma.head<3>().maxCoeff() << " deg and "
+       << kDegPerRad * sigma.head<3>().maxCoeff() << " deg and "
        << 1000.0 * sigma.tail<3>().maxCoeff() << " mm";
   return text.str();
 }

@@ -2,8 +2,8 @@
 
 namespace voqcal {
 
-std::vector<SetPose> PosesOf(const std::vector<const BoardSample*>& set,
-                             const CameraModel& camera) {
+std::vector<SetPose> SetPosesOf(const std::vector<const BoardSample*>& set,
+                                const CameraModel& camera) {
   std::vector<SetPose> poses;
   for (const BoardSample* sample : set) {
     const BoardPose& lidar = sample->lidar.pose;

@@ -20,7 +20,8 @@ struct SetPose {
   Eigen::Vector3d edge_x_camera, edge_y_camera;  ///< Unit, along the board's two directions.
 };
 
-std::vector<SetPose> PosesOf(const std::vector<const BoardSample*>& set, const CameraModel& camera);
+std::vector<SetPose> SetPosesOf(const std::vector<const BoardSample*>& set,
+                                const CameraModel& camera);
 
 /// The cost of one set, whitened, ten residuals a pose, with R n the rotated lidar normal:
 ///     perpendicularity   e_x . R n / sigma_normal, e_y . R n / sigma_normal
@@ -34,9 +35,8 @@ std::vector<SetPose> PosesOf(const std::vector<const BoardSample*>& set, const C
 /// - The published centre term is the mean plus the standard deviation of the centres' distances.
 ///   The sum of their squares is n (mean^2 + std^2): the same two moments, differentiable at zero.
 /// - A rigid board's camera edges are exactly perpendicular to its camera normal, so
-/// perpendicularity
-///   says again what the alignment of normals says of tilt: together they weigh it by
-///   sigma_normal / sqrt(2). The reprojection likewise weighs a centre again across the view.
+///   perpendicularity says again what the alignment of normals says of tilt: together they weigh
+///   it by sigma_normal / sqrt(2). The reprojection likewise weighs a centre again across the view.
 /// - The published reprojection term is the worst pose's. Squares already let the worst weigh most;
 ///   a maximum has kinks where the worst pose changes.
 /// - Perpendicularity takes the two directions of the board, each the mean of two opposite edges:

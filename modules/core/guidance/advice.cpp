@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "core/guidance/placement.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
 // Empty for what is not worth a move.
 std::string Length(double length_m) {
@@ -27,7 +26,7 @@ std::string Length(double length_m) {
 
 // Empty for what nobody sees.
 std::string Angle(double angle_rad) {
-  const auto tens = std::lround(std::abs(angle_rad) * kDegreesPerRadian / 10.0);
+  const auto tens = std::lround(std::abs(angle_rad) * kDegPerRad / 10.0);
   return tens == 0 ? std::string() : std::to_string(10 * tens) + " degrees";
 }
 

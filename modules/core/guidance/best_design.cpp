@@ -28,7 +28,7 @@ struct SceneSquares {
   Matrix6d mixture = Matrix6d::Zero();  // of the forms, by their shares in the p-norm's gradient
 };
 
-SceneSquares Judge(const Matrix6d& covariance, const std::vector<Matrix6d>& forms) {
+SceneSquares SquaresOver(const Matrix6d& covariance, const std::vector<Matrix6d>& forms) {
   std::vector<double> squares;
   for (const Matrix6d& form : forms) squares.push_back(form.cwiseProduct(covariance).sum());
   SceneSquares judged;
@@ -62,7 +62,7 @@ Design BestDesign(const Eigen::MatrixXd& known,
     const Eigen::MatrixXd information = known + (columns * times).reshaped(size, size);
     const Eigen::MatrixXd gain = information.llt().solve(extrinsic);
     const Matrix6d covariance = gain.topRows<6>();
-    const SceneSquares squares = Judge(covariance, forms);
+    const SceneSquares squares = SquaresOver(covariance, forms);
     // How fast the mixture's mean square falls with each candidate's times.
     const Eigen::MatrixXd slope = gain * squares.mixture * gain.transpose();
     const Eigen::VectorXd falls = columns.transpose() * slope.reshaped();

@@ -11,6 +11,7 @@
 #include "core/geometry/rigid.hpp"
 #include "core/likelihood/lidar_bias.hpp"
 #include "core/problems.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
@@ -191,26 +192,25 @@ CameraBoard ExpectedCameraBoard(const Eigen::Isometry3d& T_camera_board,
 
 std::vector<std::string> SensorExpectation::Problems() const {
   ProblemList problems;
-  constexpr double kDegrees = 180.0 / M_PI;
   problems.Require(min_elevation_rad >= -M_PI / 2,
                    "min_elevation_deg must be at least -90",
-                   kDegrees * min_elevation_rad);
+                   kDegPerRad * min_elevation_rad);
   problems.Require(max_elevation_rad <= M_PI / 2,
                    "max_elevation_deg must be at most 90",
-                   kDegrees * max_elevation_rad);
+                   kDegPerRad * max_elevation_rad);
   problems.Require(max_elevation_rad > min_elevation_rad,
                    "max_elevation_deg must exceed min_elevation_deg",
-                   kDegrees * max_elevation_rad);
+                   kDegPerRad * max_elevation_rad);
   problems.Require(max_azimuth_rad > 0.0 && max_azimuth_rad <= M_PI,
                    "max_azimuth_deg must be within 0 and 180",
-                   kDegrees * max_azimuth_rad);
+                   kDegPerRad * max_azimuth_rad);
   problems.Require(num_rows >= 2, "num_rows must be at least 2", num_rows);
   // An offset of each row is an unknown of a dense equation.
   problems.Require(
       num_rows <= static_cast<int>(kMaxRings), "num_rows must be at most 256", num_rows);
   problems.Require(column_step_rad > 0.0 && column_step_rad < 0.1,
                    "column_step_deg must be within 0 and 5",
-                   kDegrees * column_step_rad);
+                   kDegPerRad * column_step_rad);
   problems.RequirePositive("corner_noise_px", corner_noise_px);
   return problems.lines();
 }

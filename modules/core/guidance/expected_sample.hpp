@@ -36,8 +36,7 @@ inline constexpr int kExpectedThinning = 4;
 /// - camera: s^2 (J' J)^-1 of the inner corners, J = d pixel / d [rotation; translation], s the
 ///   corners' noise;
 /// - lidar, in the board's plane: (P + sum of g g' / s^2)^-1 over both ends of each row on the
-/// board,
-///   of [x; y; turn; spill; thickness], the last two with the detector's priors P (see
+///   board, of [x; y; turn; spill; thickness], the last two with the detector's priors P (see
 ///   OutlineModel). An end tells where the edge is that it lies on, along the edge's outward normal
 ///   e:
 ///       g = [e; p x e; 1; max(-e . lean, 0)],   s^2 = (e . u)^2 spacing (blur + spacing / 12)

@@ -8,11 +8,11 @@
 #include "core/geometry/rigid.hpp"
 #include "core/guidance/advice.hpp"
 #include "core/problems.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 // Nearer in both is the same view again, with the same errors of lens and board.
 constexpr double kNewDistanceM = 0.3;
 constexpr double kNewAngleRad = 15.0 * kRadPerDeg;
@@ -144,7 +144,7 @@ class PoseSearch {
           placement.centre_px = {column * (rig_.camera.width_px - 1),
                                  row * (rig_.camera.height_px - 1)};
           placement.distance_m = options_.limits.min_distance_m + distance * extent_m;
-          candidates.push_back(Judge(placement));
+          candidates.push_back(CandidateAt(placement));
         }
       }
     }
@@ -181,7 +181,7 @@ class PoseSearch {
         });
   }
 
-  Candidate Judge(const Placement& placement) const {
+  Candidate CandidateAt(const Placement& placement) const {
     Candidate candidate;
     candidate.placement = placement;
     const auto pose = PoseOf(placement, rig_.camera, up_camera_);
@@ -215,7 +215,7 @@ class PoseSearch {
         const auto attempt = [&](auto change) {
           Placement placement = best.placement;
           change(&placement);
-          best = std::min(best, Judge(placement), IsBetter);
+          best = std::min(best, CandidateAt(placement), IsBetter);
         };
         attempt([&](Placement* p) { p->centre_px.x() += share * step.centre_px.x(); });
         attempt([&](Placement* p) { p->centre_px.y() += share * step.centre_px.y(); });

@@ -6,6 +6,7 @@
 #include "core/board/board_sample.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/problems.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
@@ -69,14 +70,13 @@ bool IsInFieldOfView(const BoardPose& pose_lidar, const SensorExpectation& expec
 
 std::vector<std::string> PlacementLimits::Problems() const {
   ProblemList problems;
-  constexpr double kDegrees = 180.0 / M_PI;
   problems.RequirePositive("min_distance_m", min_distance_m);
   problems.Require(max_distance_m >= min_distance_m && std::isfinite(max_distance_m),
                    "max_distance_m must be at least min_distance_m",
                    max_distance_m);
   problems.Require(max_incidence_rad > 0.0 && max_incidence_rad < M_PI / 2,
                    "max_incidence_deg must be within 0 and 90",
-                   kDegrees * max_incidence_rad);
+                   kDegPerRad * max_incidence_rad);
   problems.Require(image_margin >= 0.0 && image_margin < 0.5,
                    "image_margin must be within 0 and 0.5",
                    image_margin);

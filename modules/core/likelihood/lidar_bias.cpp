@@ -59,9 +59,11 @@ bool LidarBias::IsObservable() const {
          outline_rise.is_observable || std::any_of(rings.begin(), rings.end(), is_observable);
 }
 
-double LidarBias::OffsetM(const LidarPoint& point) const {
-  const double ring_m = point.ring < rings.size() ? rings[point.ring].value_m : 0.0;
-  return common.value_m + dark_step.value_m * shades.ShadeOf(point.intensity) + ring_m;
+double LidarBias::OffsetM(const LidarPoint& point, const PointCloud& cloud) const {
+  const bool has_ring = cloud.has_ring && point.ring < rings.size();
+  const double ring_m = has_ring ? rings[point.ring].value_m : 0.0;
+  const double shade = cloud.has_intensity ? shades.ShadeOf(point.intensity) : 0.0;
+  return common.value_m + dark_step.value_m * shade + ring_m;
 }
 
 PointCloud LidarBias::Corrected(const PointCloud& cloud_lidar_m) const {
@@ -69,7 +71,7 @@ PointCloud LidarBias::Corrected(const PointCloud& cloud_lidar_m) const {
   for (LidarPoint& point : corrected.points) {
     const double range_m = point.position_m.cast<double>().norm();
     if (!(range_m > 0.0)) continue;  // a beam without a return
-    point.position_m *= static_cast<float>((range_m - OffsetM(point)) / range_m);
+    point.position_m *= static_cast<float>((range_m - OffsetM(point, cloud_lidar_m)) / range_m);
   }
   return corrected;
 }

@@ -40,7 +40,8 @@ struct LidarBias {
   BiasEstimate outline_rise;  ///< ...and how much more so for each metre of range: metres a metre.
 
   bool IsObservable() const;  ///< Any of them.
-  double OffsetM(const LidarPoint& point) const;
+  /// Of a point of such a cloud; intensity and scan line count only if the cloud has them.
+  double OffsetM(const LidarPoint& point, const PointCloud& cloud) const;
   /// The cloud without these errors: each point moves along its ray.
   PointCloud Corrected(const PointCloud& cloud_lidar_m) const;
 };

@@ -69,6 +69,8 @@ class SamplePicker {
 
   /// Takes the next pair with a board in both, even if it moves or the pose is not new.
   void RequestCapture() { is_capture_requested_ = true; }
+  /// Takes that back, if the pair has not come.
+  void CancelCapture() { is_capture_requested_ = false; }
 
   /// The samples that the session has: new poses must differ from them.
   void SetKnown(const std::vector<BoardSample>& samples);

@@ -10,6 +10,7 @@
 
 #include "core/geometry/rigid.hpp"
 #include "core/problems.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
@@ -52,7 +53,7 @@ class PairTable {
     for (std::size_t i = 0; i < size(); ++i) {
       for (std::size_t j = i + 1; j < size(); ++j) {
         if (candidates[i].sample == candidates[j].sample) continue;  // one of them at most
-        const char agrees = Compare(i, j).Agrees() ? 1 : 0;
+        const char agrees = PairErrorOf(i, j).Agrees() ? 1 : 0;
         agrees_[i * size() + j] = agrees_[j * size() + i] = agrees;
       }
     }
@@ -62,7 +63,7 @@ class PairTable {
   bool Agree(std::size_t i, std::size_t j) const { return agrees_[i * size() + j] != 0; }
   const Candidate& candidate(std::size_t i) const { return candidates_[i]; }
 
-  PairError Compare(std::size_t i, std::size_t j) const {
+  PairError PairErrorOf(std::size_t i, std::size_t j) const {
     const BoardPose& la = LidarPose(i);
     const BoardPose& lb = LidarPose(j);
     const BoardPose& ca = samples_[candidates_[i].sample].camera.pose;
@@ -151,21 +152,19 @@ std::string ReasonFor(std::size_t candidate,
     if (pairs.candidate(i).sample == pairs.candidate(candidate).sample) continue;
     ++num_others;
     if (!pairs.Agree(candidate, i)) ++num_disagreeing;
-    const PairError error = pairs.Compare(candidate, i);
+    const PairError error = pairs.PairErrorOf(candidate, i);
     if (!std::isnan(error.relative) && error.relative <= worst.relative) continue;
     worst = error;
     worst_sample = pairs.candidate(i).sample;
   }
-  constexpr double kDegreesPerRadian = 180.0 / M_PI;
   std::ostringstream text;
   text.setf(std::ios::fixed);
   text.precision(1);
   text << "disagrees with " << num_disagreeing << " of " << num_others
        << " consistent samples; worst with sample " << samples[worst_sample].id
        << ": centre distances differ by " << 1000.0 * worst.distance_m << " mm (limit "
-       << 1000.0 * options.max_distance_m << "), normal angles by "
-       << kDegreesPerRadian * worst.angle_rad << " deg (limit "
-       << kDegreesPerRadian * options.max_angle_rad << ")";
+       << 1000.0 * options.max_distance_m << "), normal angles by " << kDegPerRad * worst.angle_rad
+       << " deg (limit " << kDegPerRad * options.max_angle_rad << ")";
   return text.str();
 }
 

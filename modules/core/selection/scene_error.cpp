@@ -7,6 +7,7 @@
 
 #include "core/board/metres_per_pixel.hpp"
 #include "core/estimation/left_perturbation.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
@@ -72,12 +73,11 @@ SceneErrorPredictor::SceneErrorPredictor(const std::vector<BoardSample>& scene,
 }
 
 double SceneErrorPredictor::PredictMm(const std::array<int, 3>& poses) const {
-  constexpr double kMillimetresPerMetre = 1000.0;
   Matrix6d information = Matrix6d::Zero();
   for (const int pose : poses) information += information_[static_cast<std::size_t>(pose)];
   const Eigen::LLT<Matrix6d> cholesky(information);
   if (cholesky.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
-  return kMillimetresPerMetre * std::sqrt(cholesky.solve(scene_m2_).trace());
+  return kMmPerM * std::sqrt(cholesky.solve(scene_m2_).trace());
 }
 
 }  // namespace voqcal

@@ -11,11 +11,11 @@
 
 #include "core/median.hpp"
 #include "core/selection/best_sets.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kMillimetresPerMetre = 1000.0;
 constexpr double kLeastKappa = 3.0;  // of any 3x3 matrix: ||N||_F ||N^-1||_F >= trace(I)
 
 // A determinant of three unit vectors below this is rounding: kappa would exceed about 1e6.
@@ -92,7 +92,7 @@ double BoardDimensionErrorMm(const std::array<double, 4>& edge_lengths_m, const 
   const std::array<double, 4> true_lengths_m = board.EdgeLengthsM();
   double sum_m = 0.0;
   for (std::size_t i = 0; i < 4; ++i) sum_m += std::abs(edge_lengths_m[i] - true_lengths_m[i]);
-  return kMillimetresPerMetre * sum_m;
+  return kMmPerM * sum_m;
 }
 
 double MedianBoardDimensionErrorMm(const std::vector<BoardSample>& samples,

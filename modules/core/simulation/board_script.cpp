@@ -10,11 +10,11 @@
 
 #include "core/simulation/keyed_noise.hpp"
 #include "core/simulation/stop_checks.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr double kMaxTiltRad = 40 * kRadPerDeg;  // yaw and pitch, each
 constexpr double kMidRollRad = 45 * kRadPerDeg;  // a diamond: beams cross all four edges
 constexpr double kMaxRollOffsetRad = 15 * kRadPerDeg;

@@ -16,8 +16,7 @@ struct RoomPicture {
 };
 
 /// Paints the room, anti-aliased: pixels whose corners differ, or may miss a thin line, are sampled
-/// 4 x 4. Black where the
-/// lens model cannot be inverted.
+/// 4 x 4. Black where the lens model cannot be inverted.
 RoomPicture PaintRoom(const Room& room,
                       const CameraModel& camera,
                       const PixelRays& rays,

@@ -4,10 +4,11 @@
 #include <sstream>
 #include <utility>
 
+#include "core/units.hpp"
+
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr double kSweepS = 0.1;
 
 // Rings at even steps, all of a column fired at once.

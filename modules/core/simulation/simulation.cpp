@@ -11,6 +11,7 @@
 #include "core/simulation/lidar_simulator.hpp"
 #include "core/simulation/room.hpp"
 #include "core/simulation/stop_checks.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
@@ -76,11 +77,11 @@ std::vector<std::string> SimulationOptions::Problems() const {
   problems.Require(std::isfinite(dark_bias_m), "dark_bias_m must be finite", dark_bias_m);
   require_sigma("intensity_noise must not be negative", intensity_noise);
   problems.Require(beam_divergence_rad >= 0 && beam_divergence_rad <= 0.05,
-                   "beam_divergence_rad must be within 0 and 0.05",
-                   beam_divergence_rad);
+                   "beam_divergence_deg must be within 0 and 2.86",
+                   beam_divergence_rad / kRadPerDeg);
   problems.Require(pointing_noise_rad >= 0 && pointing_noise_rad <= 0.01,
-                   "pointing_noise_rad must be within 0 and 0.01",
-                   pointing_noise_rad);
+                   "pointing_noise_deg must be within 0 and 0.57",
+                   pointing_noise_rad / kRadPerDeg);
   problems.Require(dropout >= 0 && dropout < 1, "dropout must be within 0 and 1", dropout);
   require_sigma("image_noise must not be negative", image_noise);
   problems.Require(image_blur_px >= 0 && image_blur_px <= 10,

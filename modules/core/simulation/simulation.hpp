@@ -56,8 +56,7 @@ class Simulation {
  public:
   /// Paints the room and finds the stops; takes seconds for a large image.
   /// @throws std::invalid_argument if `options`, `board` or `camera` have Problems(), or if the
-  /// board
-  ///     fits nowhere into the view of both sensors.
+  ///     board fits nowhere into the view of both sensors.
   Simulation(const SimulationOptions& options, const BoardSpec& board, const CameraModel& camera);
   ~Simulation();
 

@@ -6,11 +6,11 @@
 #include "core/geometry/rigid.hpp"
 #include "core/simulation/board_prop.hpp"
 #include "core/simulation/scan_pattern.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr double kMaxObliqueRad = 55 * kRadPerDeg;  // normal against the line of sight
 constexpr double kBeamMarginRad = 0.25 * kRadPerDeg;
 constexpr double kImageMarginShare = 0.02;  // of the shorter side

@@ -1,5 +1,6 @@
 #include "core/assessment/best_extrinsic.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -74,6 +75,23 @@ TEST(RefineBest, KeepsTheAverageThatNoMethodBetters) {
   EXPECT_EQ(best.method, RefineMethod::kAverage);
   EXPECT_EQ(best.T_camera_lidar.matrix(), test::TestExtrinsic().matrix());
   EXPECT_EQ(best.covariance(3, 3), 0.004 * 0.004);
+}
+
+// Boards behind the camera have no error in the image, and then neither has the mean over all.
+TEST(RefineBest, LeavesAnAverageWhoseErrorIsUnknown) {
+  const auto samples = test::SamplesWithSweeps(NoisyScene(12), kFaults);
+  const auto all = test::Pointers(samples);
+  double nearest_m = 1e9;
+  for (const BoardSample& sample : samples) {
+    nearest_m = std::min(nearest_m, sample.camera.pose.centre_m.z());
+  }
+  AveragedExtrinsic average = RoughAverage();
+  average.T_camera_lidar.pretranslate(Eigen::Vector3d(0, 0, -nearest_m - 0.05));
+  const BestExtrinsic best = RefineBest(all, test::TestCamera(), average, RefinerOptions{});
+  ASSERT_TRUE(std::isnan(best.trials[0].ErrorMm()));
+  ASSERT_TRUE(best.trials[2].problem.empty()) << best.trials[2].problem;
+  EXPECT_EQ(best.method, RefineMethod::kLikelihood);
+  EXPECT_TRUE(best.IsUsable()) << best.problem;
 }
 
 TEST(RefineBest, ObeysANamedMethod) {

@@ -52,6 +52,13 @@ TEST_F(ScoreBins, SortsByRange) {
   EXPECT_DOUBLE_EQ(bins[1].score.centre_mm.max, 4);
 }
 
+TEST_F(ScoreBins, ARangeOnTheEdgeIsOfTheFartherBinAsACellsPixelIs) {
+  Add(320, 200, 2, 1);
+  samples_.back().camera.pose.centre_m = Eigen::Vector3d(0, 0, 2);  // exactly
+  EXPECT_THAT(Names(BinByRange(test::Pointers(samples_), score_)),
+              ::testing::ElementsAre("2 to 3 m"));
+}
+
 TEST_F(ScoreBins, NoPosesGiveNoBins) {
   EXPECT_THAT(BinByImageCell({}, {}, camera_), ::testing::IsEmpty());
   EXPECT_THAT(BinByRange({}, {}), ::testing::IsEmpty());

@@ -28,18 +28,18 @@ template <typename Change>
 Verdict JudgeWith(const Change& change) {
   Evidence evidence = GoodEvidence();
   change(&evidence);
-  return Judge(evidence);
+  return VerdictOf(evidence);
 }
 
-TEST(Judge, IsGoodWhereAllIs) {
-  const Verdict verdict = Judge(GoodEvidence());
+TEST(VerdictOf, IsGoodWhereAllIs) {
+  const Verdict verdict = VerdictOf(GoodEvidence());
   EXPECT_EQ(verdict.grade, Grade::kGood);
   EXPECT_THAT(verdict.headline, HasSubstr("use it"));
   for (const VerdictCheck& check : verdict.checks)
     EXPECT_EQ(check.grade, Grade::kGood) << check.name;
 }
 
-TEST(Judge, IsAsBadAsItsWorstCheck) {
+TEST(VerdictOf, IsAsBadAsItsWorstCheck) {
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->held_out_mm = 5.1; }).grade, Grade::kLook);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->held_out_mm = 12.1; }).grade, Grade::kBad);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->in_sample_mm = 0.5; }).grade, Grade::kBad);
@@ -51,7 +51,7 @@ TEST(Judge, IsAsBadAsItsWorstCheck) {
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = SceneVerdict::kDisagrees; }).grade, Grade::kBad);
 }
 
-TEST(Judge, WantsMoreOfPosesAndParts) {
+TEST(VerdictOf, WantsMoreOfPosesAndParts) {
   const auto with_poses = [](int num) {
     return JudgeWith([num](Evidence* e) { e->num_used = e->num_samples = num; }).grade;
   };
@@ -66,8 +66,8 @@ TEST(Judge, WantsMoreOfPosesAndParts) {
   EXPECT_EQ(with_cells(1), Grade::kBad);
 }
 
-TEST(Judge, DoesNotCallTheUnknownGood) {
-  const Verdict verdict = Judge(Evidence{});
+TEST(VerdictOf, DoesNotCallTheUnknownGood) {
+  const Verdict verdict = VerdictOf(Evidence{});
   EXPECT_EQ(verdict.grade, Grade::kBad);  // no poses
   int num_unknown = 0;
   for (const VerdictCheck& check : verdict.checks) {
@@ -78,25 +78,25 @@ TEST(Judge, DoesNotCallTheUnknownGood) {
   EXPECT_EQ(num_unknown, 5);
 }
 
-TEST(Judge, SaysWhatToDoUnlessItIsGood) {
+TEST(VerdictOf, SaysWhatToDoUnlessItIsGood) {
   const auto text_of = [](const Verdict& verdict, const std::string& name) {
     for (const VerdictCheck& check : verdict.checks) {
       if (check.name == name) return check.text;
     }
     return std::string();
   };
-  EXPECT_EQ(text_of(Judge(GoodEvidence()), "Number of poses"), "30 poses were used.");
+  EXPECT_EQ(text_of(VerdictOf(GoodEvidence()), "Number of poses"), "30 poses were used.");
   EXPECT_EQ(text_of(JudgeWith([](Evidence* e) { e->num_used = 10; }), "Number of poses"),
             "10 poses were used. Take more: 20 to 40 are recommended.");
 }
 
-TEST(Judge, LeavesOutASceneThatSaysNothing) {
-  const std::size_t num = Judge(GoodEvidence()).checks.size();
+TEST(VerdictOf, LeavesOutASceneThatSaysNothing) {
+  const std::size_t num = VerdictOf(GoodEvidence()).checks.size();
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = SceneVerdict::kNotJudged; }).checks.size(),
             num - 1);
 }
 
-TEST(Judge, SpeaksInSentences) {
+TEST(VerdictOf, SpeaksInSentences) {
   const Verdict verdict =
       JudgeWith([](Evidence* e) { e->likeliest_fault = "the focal length is off"; });
   for (const VerdictCheck& check : verdict.checks) {

@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "core/guidance/placement.hpp"
+#include "core/units.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 const Eigen::Vector3d kUp(0, -1, 0);
 
 Eigen::Isometry3d Pose(

@@ -10,14 +10,13 @@
 #include "core/guidance/placement.hpp"
 #include "core/lidar_detection/lidar_board.hpp"
 #include "core/simulation/lidar_simulator.hpp"
+#include "core/units.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal {
 namespace {
 
 using ::testing::ElementsAre;
-
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 Eigen::Isometry3d Held(double distance_m, double yaw_deg, double pitch_deg) {
   const Placement placement{{1100, 560}, distance_m, yaw_deg * kRadPerDeg, pitch_deg * kRadPerDeg};

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/rigid.hpp"
+#include "core/units.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal {
@@ -13,8 +14,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 Eigen::Vector3d Up() { return test::TestExtrinsic().linear().col(2); }
 

@@ -8,12 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/rigid.hpp"
+#include "core/units.hpp"
 #include "simulated_rig.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 std::vector<Eigen::Isometry3d> StopsOf(const test::SimulatedRig& rig) {
   const BoardScript script(rig.options, rig.board, rig.camera, Room());

@@ -9,6 +9,7 @@
 
 #include "messaging/convert_image.hpp"
 #include "messaging/sequence.hpp"
+#include "rig/lcm_url.hpp"
 #include "voqcal/command_t.hpp"
 #include "voqcal/event_t.hpp"
 #include "voqcal/image_t.hpp"

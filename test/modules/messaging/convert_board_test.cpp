@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "messaging/bus.hpp"
+#include "messaging/encode.hpp"
 
 namespace voqcal {
 namespace {
@@ -126,8 +127,7 @@ void ExpectSame(const BoardSample& a, const BoardSample& b) {
 /// The message as a reader on the other side of LCM has it.
 template <typename Message>
 Message OverTheWire(const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  const std::vector<std::uint8_t> bytes = EncodeMessage(message);
   Message decoded;
   EXPECT_EQ(DecodeMessage(bytes.data(), bytes.size(), &decoded), "");
   return decoded;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "messaging/bus.hpp"
+#include "messaging/encode.hpp"
 #include "voqcal/image_metadata_t.hpp"
 #include "voqcal/image_t.hpp"
 #include "voqcal/pointcloud2_t.hpp"
@@ -16,13 +17,6 @@
 
 namespace voqcal {
 namespace {
-
-template <typename Message>
-std::vector<std::uint8_t> Encoded(const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
 
 template <typename Message>
 std::uint64_t Fingerprint() {
@@ -60,14 +54,14 @@ TEST(DecodeMessage, TakesAWholeMessage) {
   image_t image{};
   image.size = 3;
   image.data = {1, 2, 3};
-  const auto bytes = Encoded(image);
+  const auto bytes = EncodeMessage(image);
   image_t decoded;
   EXPECT_EQ(DecodeMessage(bytes.data(), bytes.size(), &decoded), "");
   EXPECT_EQ(decoded.data, image.data);
 }
 
 TEST(DecodeMessage, SaysWhyNot) {
-  const auto bytes = Encoded(image_t{});
+  const auto bytes = EncodeMessage(image_t{});
   EXPECT_NE(ProblemOf<image_t>({}), "");
   EXPECT_NE(ProblemOf<pointcloud2_t>(bytes), "");  // another type's fingerprint
 
@@ -89,9 +83,9 @@ TEST(DecodeMessage, RefusesAbsurdCounts) {
   constexpr std::size_t kImageMetadataAt = kImageSizeAt + 4;
   constexpr std::size_t kCloudFieldsAt = kHash + 8 + 4 + (4 + 1) + 4 + 4;  // empty frame_id
   constexpr std::size_t kSamplesAt = kHash + 8 + 8 + 1 + (4 + 1);
-  const auto image = Encoded(image_t{});
-  const auto cloud = Encoded(pointcloud2_t{});
-  const auto samples = Encoded(samples_t{});
+  const auto image = EncodeMessage(image_t{});
+  const auto cloud = EncodeMessage(pointcloud2_t{});
+  const auto samples = EncodeMessage(samples_t{});
   for (const std::int32_t count : {-1, INT32_MIN, INT32_MAX, 1 << 29, 1 << 30, 1000}) {
     EXPECT_NE(ProblemOf<image_t>(WithInt32(image, kImageSizeAt, count)), "") << count;
     EXPECT_NE(ProblemOf<image_t>(WithInt32(image, kImageMetadataAt, count)), "") << count;
@@ -102,7 +96,7 @@ TEST(DecodeMessage, RefusesAbsurdCounts) {
 
 TEST(DecodeMessage, RefusesStringsWithoutAnEnd) {
   constexpr std::size_t kFrameIdAt = 8 + 8 + 4;
-  const auto cloud = Encoded(pointcloud2_t{});
+  const auto cloud = EncodeMessage(pointcloud2_t{});
   for (const std::int32_t length : {0, -1, INT32_MIN, INT32_MAX}) {
     EXPECT_NE(ProblemOf<pointcloud2_t>(WithInt32(cloud, kFrameIdAt, length)), "") << length;
   }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "messaging/encode.hpp"
 #include "support/temporary_folder.hpp"
 #include "voqcal/sample_t.hpp"
 
@@ -14,9 +15,7 @@ using ::testing::HasSubstr;
 
 template <typename Message>
 void WriteEvent(const char* channel, const Message& message, LogWriter* log) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  log->Write({0, message.utime, channel, bytes});
+  log->Write({0, message.utime, channel, EncodeMessage(message)});
 }
 
 class SessionSceneReaderTest : public ::testing::Test {

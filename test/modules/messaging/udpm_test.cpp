@@ -13,6 +13,7 @@
 
 #include "messaging/bus.hpp"
 #include "messaging/spin.hpp"
+#include "rig/lcm_url.hpp"
 #include "voqcal/event_t.hpp"
 
 namespace voqcal {

@@ -101,6 +101,17 @@ TEST_F(AssessorNodeTest, PassesTheProblemOnAndWritesNothing) {
   EXPECT_FALSE(std::filesystem::exists(file_));
 }
 
+TEST_F(AssessorNodeTest, CountsSamplesThatContradictThemselvesAndGoesOn) {
+  RunStagesBefore(test::NoisySamples(8), 8);
+  test::Send(&bus_, rig_.channels.calib_samples, BrokenSamples(8));
+  Step(&node_);
+  EXPECT_THAT(sent(), IsEmpty());
+  EXPECT_EQ(node_.counters().at("unreadable message"), 1);
+  SendSamples(test::NoisySamples(8), 8);
+  Step(&node_);
+  EXPECT_THAT(sent(), SizeIs(1));
+}
+
 TEST_F(AssessorNodeTest, WaitsForAllThreeOfOneRevision) {
   RunStagesBefore(test::NoisySamples(5), 5);
   SendSamples(test::NoisySamples(6), 6);

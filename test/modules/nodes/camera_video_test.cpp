@@ -142,30 +142,47 @@ TEST(DriverOptionsVideo, NamesOneCamera) {
   EXPECT_THAT(options.Problems().at(0), HasSubstr("has 2"));
 }
 
-TEST(CaptureClock, TakesTheLeastDelayAndKeepsTheStreamsSteps) {
-  CaptureClock clock;
-  constexpr std::int64_t kOffsetUs = 1'700'000'000'000'000;
-  // Delays of 30, 10, 50, 20 ms after capture.
-  EXPECT_EQ(clock.UtimeOf(kOffsetUs + 30'000, 0), kOffsetUs + 30'000);
-  EXPECT_EQ(clock.UtimeOf(kOffsetUs + 40'000 + 10'000, 40'000), kOffsetUs + 40'000 + 10'000);
-  // From here on by the delay of 10 ms, but for 100 us a second of elapsed time.
-  EXPECT_EQ(clock.UtimeOf(kOffsetUs + 80'000 + 50'000, 80'000), kOffsetUs + 80'000 + 10'008);
-  EXPECT_EQ(clock.UtimeOf(kOffsetUs + 120'000 + 20'000, 120'000), kOffsetUs + 120'000 + 10'009);
+/// The host's clocks: the wall clock is ahead of the steady one.
+CaptureClock::Arrival At(std::int64_t steady_us, std::int64_t ahead_us) {
+  return {steady_us + ahead_us, steady_us};
 }
 
-TEST(CaptureClock, FollowsAClockThatRunsSlow) {
+TEST(CaptureClock, TakesTheLeastDelayAndKeepsTheStreamsSteps) {
   CaptureClock clock;
-  std::int64_t error_us = 0;
-  for (std::int64_t second = 0; second < 3600; ++second) {
-    const std::int64_t arrival_utime = second * 1'000'000;
-    const std::int64_t stream_us = arrival_utime - second * 50;  // 50 ppm slow
-    error_us = clock.UtimeOf(arrival_utime, stream_us) - arrival_utime;
+  constexpr std::int64_t kAheadUs = 1'700'000'000'000'000;
+  // Delays of 30, 10, 50, 20 ms after capture.
+  EXPECT_EQ(clock.UtimeOf(At(30'000, kAheadUs), 0), kAheadUs + 30'000);
+  EXPECT_EQ(clock.UtimeOf(At(50'000, kAheadUs), 40'000), kAheadUs + 50'000);
+  // From here on by the delay of 10 ms, but for 100 us a second of elapsed time.
+  EXPECT_EQ(clock.UtimeOf(At(130'000, kAheadUs), 80'000), kAheadUs + 80'000 + 10'008);
+  EXPECT_EQ(clock.UtimeOf(At(140'000, kAheadUs), 120'000), kAheadUs + 120'000 + 10'009);
+}
+
+TEST(CaptureClock, FollowsAClockThatRunsSlowAtAnyRate) {
+  for (const std::int64_t period_us : {1'000'000, 33'333, 4'000}) {
+    CaptureClock clock;
+    std::int64_t error_us = 0;
+    for (std::int64_t us = 0; us < 600'000'000; us += period_us) {
+      const std::int64_t stream_us = us - us / 20'000;  // 50 ppm slow
+      error_us = clock.UtimeOf(At(us, 0), stream_us) - us;
+    }
+    EXPECT_EQ(error_us, 0) << period_us;
   }
-  EXPECT_EQ(error_us, 0);
+}
+
+TEST(CaptureClock, FollowsTheHostsClockWhenItIsSet) {
+  CaptureClock clock;
+  constexpr std::int64_t kHourUs = 3'600'000'000;
+  const auto delay_us = [&clock](std::int64_t us, std::int64_t ahead_us) {
+    return clock.UtimeOf(At(us, ahead_us), us) - us - ahead_us;
+  };
+  EXPECT_EQ(delay_us(100'000, 0), 0);
+  EXPECT_EQ(delay_us(200'000, kHourUs), 0);   // set forward
+  EXPECT_EQ(delay_us(300'000, -kHourUs), 0);  // and back
 }
 
 TEST(CaptureClock, WithoutAStreamsTimeTheFrameCameAtOnce) {
-  EXPECT_EQ(CaptureClock().UtimeOf(123, std::nullopt), 123);
+  EXPECT_EQ(CaptureClock().UtimeOf({123, 5}, std::nullopt), 123);
 }
 
 }  // namespace

@@ -34,6 +34,15 @@ class ChainTest : public ::testing::Test {
                    const std::string& log_sha256 = "log's hash") {
     Send(&bus_, rig_.channels.calib_samples, SamplesMessage(samples, revision, log_sha256));
   }
+  /// A message that decodes, with a point whose scan line is missing.
+  static samples_t BrokenSamples(std::int64_t revision) {
+    samples_t message = SamplesMessage(NoisySamples(4), revision);
+    message.samples[0].lidar.num_points = 1;
+    message.samples[0].lidar.points.assign(1, std::vector<float>(4));
+    message.samples[0].lidar.num_rings = 2;
+    message.samples[0].lidar.rings.resize(2);
+    return message;
+  }
   /// Lets a stage compute, and hands on what it publishes.
   template <typename Node>
   void Step(Node* node) {

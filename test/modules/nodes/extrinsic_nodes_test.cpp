@@ -120,6 +120,31 @@ TEST_F(ExtrinsicNodesTest, PassTheProblemOfTooFewSamplesOn) {
   EXPECT_EQ(refiner_.counters(), (test::Counters{{"without a result", 1}}));
 }
 
+TEST_F(ExtrinsicNodesTest, CountMessagesThatContradictThemselvesAndGoOn) {
+  const auto samples = ExactSamples(8);
+  SendSamples(samples, 8);
+  Step(&selector_);
+  voq_sets_t sets = sets_.messages.back();
+  sets.sets[0].sample_ids[0] = 99;
+  test::Send(&bus_, rig_.channels.voq_sets, sets);
+  Step(&estimator_);
+  Step(&estimator_);
+  EXPECT_THAT(averaged(), IsEmpty());
+  EXPECT_EQ(estimator_.counters().at("unreadable message"), 1);
+
+  SendSamples(samples, 8);  // a second later both come again
+  selector_.Republish();
+  test::HandleAll(&bus_);
+  Step(&estimator_);
+  ASSERT_THAT(averaged(), SizeIs(1));
+  extrinsic_averaged_t average = averaged()[0];
+  average.T_camera_lidar.quaternion_xyzw[3] = 7;
+  test::Send(&bus_, rig_.channels.extrinsic_averaged, average);
+  Step(&refiner_);
+  EXPECT_THAT(refined(), IsEmpty());
+  EXPECT_EQ(refiner_.counters().at("unreadable message"), 1);
+}
+
 TEST_F(ExtrinsicNodesTest, WaitForMessagesOfTheSameRevision) {
   SendSamples(ExactSamples(5), 5);
   Step(&selector_);

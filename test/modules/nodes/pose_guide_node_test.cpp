@@ -10,6 +10,7 @@
 #include "extrinsic_estimator/extrinsic_estimator_node.hpp"
 #include "extrinsic_refiner/extrinsic_refiner_node.hpp"
 #include "messaging/convert_result.hpp"
+#include "messaging/encode.hpp"
 #include "modules/nodes/chain_test.hpp"
 #include "support/matchers.hpp"
 #include "voq_selector/voq_selector_node.hpp"
@@ -57,12 +58,6 @@ void ExpectOneBoard(const next_pose_t& next, const Eigen::Isometry3d& T_camera_l
   }
 }
 
-std::vector<std::uint8_t> Encoded(const next_pose_t& next) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(next.getEncodedSize()));
-  EXPECT_EQ(next.encode(bytes.data(), 0, next.getEncodedSize()), next.getEncodedSize());
-  return bytes;
-}
-
 TEST_F(PoseGuideTest, AsksForAPoseBeforeTheFirstSample) {
   EXPECT_THAT(guide_.State(), HasSubstr("waiting for samples"));
   SendSamples({}, 0);
@@ -84,6 +79,19 @@ TEST_F(PoseGuideTest, NeedsNoExtrinsicForTheFirstTwoSamples) {
   ASSERT_THAT(poses(), SizeIs(2));
   EXPECT_TRUE(poses()[1].is_lidar_known);
   EXPECT_TRUE(std::isfinite(poses()[1].worst_error));
+}
+
+TEST_F(PoseGuideTest, CountsSamplesThatContradictThemselvesAndGoesOn) {
+  samples_t few = BrokenSamples(1);
+  few.samples.resize(2);
+  few.num_samples = 2;
+  test::Send(&bus_, rig_.channels.calib_samples, few);
+  Step(&guide_);
+  EXPECT_THAT(poses(), IsEmpty());
+  EXPECT_EQ(guide_.counters().at("unreadable message"), 1);
+  SendSamples(test::NoisySamples(2), 2);
+  Step(&guide_);
+  EXPECT_THAT(poses(), SizeIs(1));
 }
 
 TEST_F(PoseGuideTest, GoesByTheRefinedExtrinsicOfTheSameSamples) {
@@ -132,7 +140,7 @@ TEST_F(PoseGuideTest, EndsUpTheSameHoweverTheExtrinsicsArrive) {
   Step(&both_at_once);
   ASSERT_THAT(poses(), SizeIs(3));
   EXPECT_TRUE(poses()[1].is_enough);
-  EXPECT_EQ(Encoded(poses()[1]), Encoded(poses()[2]));
+  EXPECT_EQ(EncodeMessage(poses()[1]), EncodeMessage(poses()[2]));
   Step(&one_by_one);
   EXPECT_THAT(poses(), SizeIs(3));  // and no more
 }

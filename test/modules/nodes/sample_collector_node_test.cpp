@@ -185,6 +185,21 @@ TEST_F(SampleCollectorNodeTest, CaptureTakesASinglePair) {
   EXPECT_EQ(last_event().reason, "");
 }
 
+TEST_F(SampleCollectorNodeTest, ResetAndFinishTakeBackACaptureThatWaits) {
+  for (const std::string command : {"reset", "finish"}) {
+    Restart();
+    Command("capture");
+    Command(command);
+    Republish();
+    const auto frames = test::StillFrames(samples_, 0);
+    test::Send(bus_.get(), rig_.channels.lidar_board, frames[0].lidar);
+    test::Send(bus_.get(), rig_.channels.camera_board, frames[0].camera);
+    test::Send(bus_.get(), rig_.channels.camera_board, frames[1].camera);  // closes the pair
+    EXPECT_THAT(Ids(), IsEmpty()) << command;
+    EXPECT_EQ(last_event().reason, "not yet still for long enough");
+  }
+}
+
 TEST_F(SampleCollectorNodeTest, KeepsTheSweepAndTheImageOfTheSamplesFirstFrame) {
   ShowStop(0, {0, 1, 2});
   SessionSceneReader reader(folder_.path() / kSamplesLogName);

@@ -5,6 +5,7 @@
 
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
+#include "messaging/encode.hpp"
 #include "modules/nodes/node_test.hpp"
 #include "sample_collector/session_log.hpp"
 #include "support/temporary_folder.hpp"
@@ -19,10 +20,7 @@ class SessionViewsTest : public ::testing::Test {
  protected:
   template <typename Message>
   static SensorFrame Frame(const Message& message) {
-    SensorFrame frame{message.utime, {}};
-    frame.bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(frame.bytes.data(), 0, static_cast<int>(frame.bytes.size()));
-    return frame;
+    return {message.utime, EncodeMessage(message)};
   }
   void Accept(std::size_t i, int image_width_px) {
     const cv::Mat image(rig_.camera.height_px, image_width_px, CV_8U, cv::Scalar(100));

@@ -36,6 +36,17 @@ TEST_F(VoqSelectorNodeTest, ChoosesTheSetsOfLowestVoq) {
   EXPECT_EQ(node_.State(), "running");
 }
 
+TEST_F(VoqSelectorNodeTest, CountsSamplesThatContradictThemselvesAndGoesOn) {
+  test::Send(&bus_, rig_.channels.calib_samples, BrokenSamples(1));
+  Step(&node_);
+  Step(&node_);
+  EXPECT_THAT(sent(), IsEmpty());
+  EXPECT_EQ(node_.counters().at("unreadable message"), 1);
+  SendSamples(test::NoisySamples(4), 2);
+  Step(&node_);
+  EXPECT_THAT(sent(), SizeIs(1));
+}
+
 TEST_F(VoqSelectorNodeTest, LeavesOutASampleThatDisagreesAndNamesIt) {
   test::SyntheticSamplesOptions options;
   options.num_samples = 10;

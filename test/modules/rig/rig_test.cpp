@@ -45,7 +45,7 @@ TEST(LoadRig, NeedsOnlyNameBoardAndCamera) {
   const Rig rig = Load(Minimal());
   EXPECT_EQ(rig.name, "small");
   EXPECT_EQ(rig.sha256, Sha256OfBytes(Minimal()));
-  EXPECT_EQ(rig.lcm_url, kDefaultRigLcmUrl);
+  EXPECT_EQ(rig.lcm_url, kDefaultLcmUrl);
   EXPECT_EQ(rig.board.num_corners_y, 6);
   EXPECT_EQ(rig.camera.lens, LensModel::kPlumbBob);
   EXPECT_EQ(rig.camera.fy_px, 501);
@@ -210,7 +210,19 @@ TEST(LoadRig, ReportsEveryProblemOfEachPart) {
   EXPECT_THAT(error, HasSubstr("rig.yaml:5: lidar_driver: rate_hz must be positive, is 0"));
   EXPECT_THAT(error, HasSubstr("rig.yaml:6: voq_selector: num_sets"));
   EXPECT_THAT(error, HasSubstr("rig.yaml:8: sample_collector: num_still_frames"));
-  EXPECT_THAT(error, HasSubstr("rig.yaml:9: sample_collector: min_new_angle_rad"));
+  EXPECT_THAT(error,
+              HasSubstr("rig.yaml:9: sample_collector: min_new_angle_deg must not be negative, "
+                        "is -1"));
+}
+
+TEST(LoadRig, NamesAnglesAsTheFileDoes) {
+  const std::string error = LoadError(Minimal() +
+                                      "simulation: {dense_from_deg: 5, dense_to_deg: -5}\n"
+                                      "pose_guide:\n"
+                                      "  sensors: {min_elevation_deg: 20, max_elevation_deg: 10}\n"
+                                      "camera_board_detector: {max_edge_width_deg: -2}\n");
+  EXPECT_THAT(error, Not(HasSubstr("_rad"))) << error;
+  EXPECT_THAT(error, HasSubstr("max_edge_width_deg must be positive and finite, is -2"));
 }
 
 TEST(LoadRig, ReportsProblemsOfBoardAndCamera) {

@@ -1,6 +1,7 @@
 // The buttons, and what becomes of what they asked for.
 
 import { byId, setText } from "./dom.ts";
+import { News } from "./news.ts";
 import { eventText } from "./panels.ts";
 import type { CommandName, Events, Request, Samples } from "./protocol.ts";
 
@@ -23,7 +24,7 @@ const GIVE_UP_MS = 30_000;
 export class Actions {
   private waitingFor: CommandName | null = null;
   private timers: number[] = [];
-  private lastSeq = -1;
+  private readonly news = new News();
   private isLive = false;
   private hasSamples = false;
 
@@ -70,14 +71,8 @@ export class Actions {
     this.enable();
   }
 
-  /** The newest event is first; those before the page was opened are no news. */
   takeEvents({ events }: Events): void {
-    const newest = events[0];
-    if (!newest) return;
-    const isFirst = this.lastSeq < 0;
-    const news = events.filter((event) => event.seq > this.lastSeq);
-    this.lastSeq = newest.seq;
-    if (isFirst) return;
+    const news = this.news.since(events);
     // Rejects come by the second: they are news only to who waits for a sample.
     const told = news.find((event) => event.event !== "rejected" || this.waitingFor !== null);
     if (told) this.say(eventText(told));

@@ -1,7 +1,9 @@
 #include "core/selection/consistency.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -18,7 +20,9 @@ namespace {
 struct PairError {
   double distance_m = 0.0;
   double angle_rad = 0.0;
-  double relative = 0.0;  // the worse of the two over its limit
+  double max_distance_m = 0.0;  // the limits
+  double max_angle_rad = 0.0;
+  double relative = 0.0;  // the worst over its limit
 
   bool Agrees() const { return relative <= 1.0; }  // false for NaN
 };
@@ -37,6 +41,70 @@ std::vector<Candidate> CandidatesOf(const std::vector<BoardSample>& samples) {
     }
   }
   return candidates;
+}
+
+// How much farther than whole sightings may be a lidar board's centre along a direction, and its
+// normal across, because not all of its sides were measured (3 sigma). The limits of the options
+// are for whole ones.
+struct Slack {
+  Eigen::Matrix3d of_centre = Eigen::Matrix3d::Zero();
+  double angle_rad = 0.0;
+
+  explicit Slack(const LidarBoard& lidar) {
+    if (NumMeasuredSides(lidar) == 4) return;
+    constexpr double kSquaredSigmas = 9.0;
+    of_centre = kSquaredSigmas * lidar.pose.covariance.bottomRightCorner<3, 3>();
+    const Eigen::Matrix3d of_rotation =
+        kSquaredSigmas * lidar.pose.covariance.topLeftCorner<3, 3>();
+    const Eigen::Vector3d& n = lidar.pose.normal;
+    // Half of what tilts the normal: the turn about it does not.
+    angle_rad = std::sqrt(0.5 * std::max(0.0, of_rotation.trace() - n.dot(of_rotation * n)));
+  }
+
+  double Along(const Eigen::Vector3d& direction) const {
+    return std::sqrt(std::max(0.0, direction.dot(of_centre * direction)));
+  }
+};
+
+// Three things that are the same in both sensors whatever the extrinsic is: the distance of the
+// centres, the angle of the normals, and how far each centre lies off the other's plane. The last
+// follows from the others but where a centre is uncertain within its plane; it is judged there
+// alone.
+PairError ComparePair(const std::array<std::reference_wrapper<const LidarBoard>, 2>& lidar,
+                      const std::array<std::reference_wrapper<const BoardPose>, 2>& camera,
+                      const ConsistencyOptions& options) {
+  const BoardPose& la = lidar[0].get().pose;
+  const BoardPose& lb = lidar[1].get().pose;
+  const BoardPose& ca = camera[0];
+  const BoardPose& cb = camera[1];
+  const Slack slack_a(lidar[0]);
+  const Slack slack_b(lidar[1]);
+  const Eigen::Vector3d a_to_b_m = lb.centre_m - la.centre_m;
+  const auto limit_along = [&](const Eigen::Vector3d& direction, double turned_m) {
+    return std::hypot(std::hypot(options.max_distance_m, turned_m),
+                      std::hypot(slack_a.Along(direction), slack_b.Along(direction)));
+  };
+  PairError error;
+  error.distance_m = std::abs(a_to_b_m.norm() - (ca.centre_m - cb.centre_m).norm());
+  error.angle_rad =
+      std::abs(AngleBetween(la.normal, lb.normal) - AngleBetween(ca.normal, cb.normal));
+  error.max_distance_m = limit_along(a_to_b_m.normalized(), 0.0);
+  error.max_angle_rad =
+      std::hypot(options.max_angle_rad, std::hypot(slack_a.angle_rad, slack_b.angle_rad));
+  const double by_distance = error.distance_m / error.max_distance_m;
+  const double by_angle = error.angle_rad / error.max_angle_rad;
+  // Not std::max, which would hide a NaN.
+  error.relative = by_distance > by_angle ? by_distance : by_angle;
+  if (std::isnan(by_distance)) error.relative = by_distance;
+  if (NumMeasuredSides(lidar[0]) == 4 && NumMeasuredSides(lidar[1]) == 4) return error;
+  const Eigen::Vector3d seen_a_to_b_m = cb.centre_m - ca.centre_m;
+  for (const auto& [in_lidar, in_camera] :
+       {std::pair(la.normal, ca.normal), {lb.normal, cb.normal}}) {
+    const double off_plane_m = std::abs(in_lidar.dot(a_to_b_m) - in_camera.dot(seen_a_to_b_m));
+    const double turned_m = options.max_angle_rad * seen_a_to_b_m.norm();
+    error.relative = std::max(error.relative, off_plane_m / limit_along(in_lidar, turned_m));
+  }
+  return error;
 }
 
 // The pairwise comparison of all candidates.
@@ -63,29 +131,17 @@ class PairTable {
   const Candidate& candidate(std::size_t i) const { return candidates_[i]; }
 
   PairError Compare(std::size_t i, std::size_t j) const {
-    const BoardPose& la = LidarPose(i);
-    const BoardPose& lb = LidarPose(j);
-    const BoardPose& ca = samples_[candidates_[i].sample].camera.pose;
-    const BoardPose& cb = samples_[candidates_[j].sample].camera.pose;
-    PairError error;
-    error.distance_m =
-        std::abs((la.centre_m - lb.centre_m).norm() - (ca.centre_m - cb.centre_m).norm());
-    error.angle_rad =
-        std::abs(AngleBetween(la.normal, lb.normal) - AngleBetween(ca.normal, cb.normal));
-    const double by_distance = error.distance_m / options_.max_distance_m;
-    const double by_angle = error.angle_rad / options_.max_angle_rad;
-    // Not std::max, which would hide a NaN.
-    error.relative = by_distance > by_angle ? by_distance : by_angle;
-    if (std::isnan(by_distance)) error.relative = by_distance;
-    return error;
+    return ComparePair({Lidar(i), Lidar(j)}, {Camera(i), Camera(j)}, options_);
   }
 
  private:
-  const BoardPose& LidarPose(std::size_t i) const {
+  const LidarBoard& Lidar(std::size_t i) const {
     const BoardSample& sample = samples_[candidates_[i].sample];
     const int rank = candidates_[i].rank;
-    return rank == 0 ? sample.lidar.pose
-                     : sample.runners_up[static_cast<std::size_t>(rank - 1)].pose;
+    return rank == 0 ? sample.lidar : sample.runners_up[static_cast<std::size_t>(rank - 1)];
+  }
+  const BoardPose& Camera(std::size_t i) const {
+    return samples_[candidates_[i].sample].camera.pose;
   }
 
   const std::vector<BoardSample>& samples_;
@@ -141,8 +197,7 @@ Members Grow(Members members, const PairTable& pairs) {
 std::string ReasonFor(std::size_t candidate,
                       const Members& consistent,
                       const PairTable& pairs,
-                      const std::vector<BoardSample>& samples,
-                      const ConsistencyOptions& options) {
+                      const std::vector<BoardSample>& samples) {
   std::size_t num_disagreeing = 0;
   std::size_t num_others = 0;
   std::size_t worst_sample = 0;
@@ -163,9 +218,9 @@ std::string ReasonFor(std::size_t candidate,
   text << "disagrees with " << num_disagreeing << " of " << num_others
        << " consistent samples; worst with sample " << samples[worst_sample].id
        << ": centre distances differ by " << 1000.0 * worst.distance_m << " mm (limit "
-       << 1000.0 * options.max_distance_m << "), normal angles by "
+       << 1000.0 * worst.max_distance_m << "), normal angles by "
        << kDegreesPerRadian * worst.angle_rad << " deg (limit "
-       << kDegreesPerRadian * options.max_angle_rad << ")";
+       << kDegreesPerRadian * worst.max_angle_rad << ")";
   return text.str();
 }
 
@@ -199,7 +254,7 @@ Consistency FindConsistent(const std::vector<BoardSample>& samples,
     if (candidates[i].rank != 0) continue;  // once a sample, at its likeliest candidate
     const std::size_t member = member_of[candidates[i].sample];
     const int sample = static_cast<int>(candidates[i].sample);
-    const auto reason = [&] { return ReasonFor(i, members, pairs, samples, options); };
+    const auto reason = [&] { return ReasonFor(i, members, pairs, samples); };
     if (member == kNone) {
       result.inconsistent.push_back({sample, reason()});
       continue;

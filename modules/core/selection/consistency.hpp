@@ -33,6 +33,9 @@ struct ChosenCandidate {
 /// So does a lidar whose ranges are all off by b: two centres at an angle a apart come out 2 b
 /// sin(a / 2) too far from each other. max_distance_m must leave room for that (b = 60 mm and a =
 /// 60 degrees take all of the default).
+///
+/// Where not all sides of a lidar's board were measured, both limits grow by 3 sigma of its
+/// covariance, and the distance of each centre from the other's plane is compared too.
 struct Consistency {
   std::vector<int> consistent;  ///< Ascending indices of a largest subset that agrees pairwise.
   std::vector<InconsistentSample> inconsistent;

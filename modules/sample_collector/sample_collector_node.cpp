@@ -31,6 +31,7 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
       picker_(rig.board, rig.sample_collector),
       sweeps_(kMaxBufferBytes),
       images_(kMaxBufferBytes),
+      second_look_(rig),
       session_(session_folder),
       log_sha256_(session_.Sha256()) {
   picker_.SetKnown(session_.samples());
@@ -111,7 +112,30 @@ bool SampleCollectorNode::AreDetectorsPastFinish() const {
   return finish_utime_ && std::min(newest_lidar_utime_, newest_camera_utime_) > *finish_utime_;
 }
 
+void SampleCollectorNode::LookAgain() {
+  constexpr int kMaxRounds =
+      3;  // what is found makes the extrinsic, and so the place, more certain
+  std::vector<std::string> misses;
+  for (int round = 0; round < kMaxRounds && !second_look_.empty(); ++round) {
+    misses.clear();
+    const std::vector<KeptStop> found = second_look_.FindBoards(samples(), &misses);
+    for (const KeptStop& each : found) {
+      const PickerDecision decision = picker_.TakeStop(each.stop);
+      if (!decision.accepted) {
+        Count("second look: " + decision.reason);
+        continue;
+      }
+      Count("found at a second look");
+      const SensorFrame* image = each.image ? &*each.image : nullptr;
+      Accept(*decision.accepted, {&each.sweeps.front(), image}, "at a second look");
+    }
+    if (found.empty()) break;
+  }
+  for (const std::string& miss : misses) Count("second look: " + miss);
+}
+
 void SampleCollectorNode::SayFinished() {
+  LookAgain();
   is_finish_requested_ = false;
   is_finished_ = true;
   Announce(samples().empty() ? 0 : samples().back().utime, "finished", 0, "");
@@ -153,6 +177,7 @@ void SampleCollectorNode::OnCommand(const command_t& message) {
     session_.Reset();
     log_sha256_ = session_.Sha256();
     picker_.SetKnown({});
+    second_look_.Clear();
     is_finish_requested_ = false;
     is_finished_ = false;
     Announce(message.utime, "reset", 0, "");
@@ -181,6 +206,9 @@ void SampleCollectorNode::Discard(const command_t& message) {
 
 void SampleCollectorNode::Decide(const std::vector<PickerDecision>& decisions) {
   for (const PickerDecision& decision : decisions) {
+    if (decision.unsure && !second_look_.Keep(*decision.unsure, sweeps_, images_)) {
+      Count("no room for a second look");
+    }
     if (decision.accepted) {
       AcceptWithScene(*decision.accepted);
     } else {

@@ -127,6 +127,7 @@ BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias) {
   corrected.num_frames = sample.num_frames;
   corrected.camera = sample.camera;
   corrected.lidar.pose = CorrectedPose(sample.lidar, bias);
+  corrected.lidar.sides = sample.lidar.sides;
   corrected.lidar.edge_lengths_m = sample.lidar.edge_lengths_m;
   return corrected;
 }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/board/what_was_measured.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/problems.hpp"
 
@@ -51,7 +52,7 @@ struct Slack {
   double angle_rad = 0.0;
 
   explicit Slack(const LidarBoard& lidar) {
-    if (NumMeasuredSides(lidar) == 4) return;
+    if (IsWhole(lidar)) return;
     constexpr double kSquaredSigmas = 9.0;
     of_centre = kSquaredSigmas * lidar.pose.covariance.bottomRightCorner<3, 3>();
     const Eigen::Matrix3d of_rotation =
@@ -96,7 +97,7 @@ PairError ComparePair(const std::array<std::reference_wrapper<const LidarBoard>,
   // Not std::max, which would hide a NaN.
   error.relative = by_distance > by_angle ? by_distance : by_angle;
   if (std::isnan(by_distance)) error.relative = by_distance;
-  if (NumMeasuredSides(lidar[0]) == 4 && NumMeasuredSides(lidar[1]) == 4) return error;
+  if (IsWhole(lidar[0]) && IsWhole(lidar[1])) return error;
   const Eigen::Vector3d seen_a_to_b_m = cb.centre_m - ca.centre_m;
   for (const auto& [in_lidar, in_camera] :
        {std::pair(la.normal, ca.normal), {lb.normal, cb.normal}}) {

@@ -82,6 +82,10 @@ const MethodTrial& Choose(const std::vector<MethodTrial>& trials,
   return *best;
 }
 
+SceneScore NoScore(std::size_t num_samples) {
+  return SummariseScores(std::vector<PoseScore>(num_samples));
+}
+
 double CentreRmsPx(const SceneScore& scene) {
   return std::hypot(scene.centre_px.mean, scene.centre_px.std);
 }
@@ -174,6 +178,7 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
   switch (chosen.method) {
     case RefineMethod::kAverage:
       best.covariance = average.spread.cwiseAbs2().asDiagonal();
+      best.held_out = NoScore(samples.size());  // its trial's score is of its own samples
       break;
     case RefineMethod::kReprojection:
       best.T_camera_lidar = reprojection.T_camera_lidar;

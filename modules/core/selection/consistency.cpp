@@ -44,20 +44,17 @@ std::vector<Candidate> CandidatesOf(const std::vector<BoardSample>& samples) {
   return candidates;
 }
 
-// How much farther than whole sightings may be a lidar board's centre along a direction, and its
-// normal across, because not all of its sides were measured (3 sigma). The limits of the options
-// are for whole ones.
+// How far a board's centre may be off along a direction, and its normal across (3 sigma of its
+// covariance): a centre that not all sides fix, a pose from few pixels.
 struct Slack {
-  Eigen::Matrix3d of_centre = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d of_centre;
   double angle_rad = 0.0;
 
-  explicit Slack(const LidarBoard& lidar) {
-    if (IsWhole(lidar)) return;
+  explicit Slack(const BoardPose& pose) {
     constexpr double kSquaredSigmas = 9.0;
-    of_centre = kSquaredSigmas * lidar.pose.covariance.bottomRightCorner<3, 3>();
-    const Eigen::Matrix3d of_rotation =
-        kSquaredSigmas * lidar.pose.covariance.topLeftCorner<3, 3>();
-    const Eigen::Vector3d& n = lidar.pose.normal;
+    of_centre = kSquaredSigmas * pose.covariance.bottomRightCorner<3, 3>();
+    const Eigen::Matrix3d of_rotation = kSquaredSigmas * pose.covariance.topLeftCorner<3, 3>();
+    const Eigen::Vector3d& n = pose.normal;
     // Half of what tilts the normal: the turn about it does not.
     angle_rad = std::sqrt(0.5 * std::max(0.0, of_rotation.trace() - n.dot(of_rotation * n)));
   }
@@ -65,6 +62,17 @@ struct Slack {
   double Along(const Eigen::Vector3d& direction) const {
     return std::sqrt(std::max(0.0, direction.dot(of_centre * direction)));
   }
+};
+
+// Of both boards of a pair, in one sensor.
+struct PairSlack {
+  Slack a;
+  Slack b;
+
+  double Along(const Eigen::Vector3d& direction) const {
+    return std::hypot(a.Along(direction), b.Along(direction));
+  }
+  double AngleRad() const { return std::hypot(a.angle_rad, b.angle_rad); }
 };
 
 // Three things that are the same in both sensors whatever the extrinsic is: the distance of the
@@ -78,32 +86,33 @@ PairError ComparePair(const std::array<std::reference_wrapper<const LidarBoard>,
   const BoardPose& lb = lidar[1].get().pose;
   const BoardPose& ca = camera[0];
   const BoardPose& cb = camera[1];
-  const Slack slack_a(lidar[0]);
-  const Slack slack_b(lidar[1]);
-  const Eigen::Vector3d a_to_b_m = lb.centre_m - la.centre_m;
-  const auto limit_along = [&](const Eigen::Vector3d& direction, double turned_m) {
-    return std::hypot(std::hypot(options.max_distance_m, turned_m),
-                      std::hypot(slack_a.Along(direction), slack_b.Along(direction)));
+  const PairSlack slack_lidar{Slack(la), Slack(lb)};
+  const PairSlack slack_camera{Slack(ca), Slack(cb)};
+  const Eigen::Vector3d lidar_m = lb.centre_m - la.centre_m;
+  const Eigen::Vector3d camera_m = cb.centre_m - ca.centre_m;
+  const auto limit_m = [&](const Eigen::Vector3d& in_lidar, const Eigen::Vector3d& in_camera) {
+    return std::hypot(options.max_distance_m,
+                      std::hypot(slack_lidar.Along(in_lidar), slack_camera.Along(in_camera)));
   };
   PairError error;
-  error.distance_m = std::abs(a_to_b_m.norm() - (ca.centre_m - cb.centre_m).norm());
+  error.distance_m = std::abs(lidar_m.norm() - camera_m.norm());
   error.angle_rad =
       std::abs(AngleBetween(la.normal, lb.normal) - AngleBetween(ca.normal, cb.normal));
-  error.max_distance_m = limit_along(a_to_b_m.normalized(), 0.0);
-  error.max_angle_rad =
-      std::hypot(options.max_angle_rad, std::hypot(slack_a.angle_rad, slack_b.angle_rad));
+  error.max_distance_m = limit_m(lidar_m.normalized(), camera_m.normalized());
+  error.max_angle_rad = std::hypot(options.max_angle_rad,
+                                   std::hypot(slack_lidar.AngleRad(), slack_camera.AngleRad()));
   const double by_distance = error.distance_m / error.max_distance_m;
   const double by_angle = error.angle_rad / error.max_angle_rad;
   // Not std::max, which would hide a NaN.
   error.relative = by_distance > by_angle ? by_distance : by_angle;
   if (std::isnan(by_distance)) error.relative = by_distance;
   if (IsWhole(lidar[0]) && IsWhole(lidar[1])) return error;
-  const Eigen::Vector3d seen_a_to_b_m = cb.centre_m - ca.centre_m;
-  for (const auto& [in_lidar, in_camera] :
+  const double turned_m = error.max_angle_rad * camera_m.norm();
+  for (const auto& [normal_lidar, normal_camera] :
        {std::pair(la.normal, ca.normal), {lb.normal, cb.normal}}) {
-    const double off_plane_m = std::abs(in_lidar.dot(a_to_b_m) - in_camera.dot(seen_a_to_b_m));
-    const double turned_m = options.max_angle_rad * seen_a_to_b_m.norm();
-    error.relative = std::max(error.relative, off_plane_m / limit_along(in_lidar, turned_m));
+    const double off_plane_m = std::abs(normal_lidar.dot(lidar_m) - normal_camera.dot(camera_m));
+    const double most_m = std::hypot(turned_m, limit_m(normal_lidar, normal_camera));
+    error.relative = std::max(error.relative, off_plane_m / most_m);
   }
   return error;
 }

@@ -57,8 +57,11 @@ class SampleCollectorNode : public Module {
   void SayFinished();
   void Accept(const BoardSample& sample, const SampleScene& scene, const std::string& remark);
   /// Into the sweeps of stops that the lidar alone was unsure of, as far as the samples and these
-  /// stops now tell where to look.
-  void LookAgain();
+  /// stops now tell where to look. `is_resting`: the board may still be at the newest of them,
+  /// where the lidar may yet see it by itself.
+  void LookAgain(bool is_resting);
+  /// As the session goes: whenever there is half as much again to tell where to look.
+  void LookAgainIfDue();
   /// With what was seen at its first frame, if both frames are at hand. The first sample after the
   /// command "capture" is the captured one (SamplePicker::RequestCapture).
   void AcceptWithScene(const BoardSample& sample);
@@ -75,6 +78,7 @@ class SampleCollectorNode : public Module {
   FrameBuffer sweeps_;
   FrameBuffer images_;
   SecondLook second_look_;
+  std::size_t next_look_;  // at so many samples and kept stops
   SessionLog session_;
   std::string log_sha256_;
   std::int64_t event_seq_ = 0;

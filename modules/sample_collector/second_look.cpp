@@ -21,6 +21,12 @@ PointCloud CloudOf(const SensorFrame& sweep) {
   return FromMessage(message);
 }
 
+std::size_t NumBytes(const KeptStop& kept) {
+  std::size_t num = kept.image ? kept.image->bytes.size() : 0;
+  for (const SensorFrame& sweep : kept.sweeps) num += sweep.bytes.size();
+  return num;
+}
+
 // The stop as a vote: the camera's board, and all that the lidar took for it or was unsure of.
 BoardSample VoteOf(const UnsureStop& stop) {
   BoardSample vote;
@@ -41,17 +47,14 @@ BoardSample VoteOf(const UnsureStop& stop) {
 
 bool SecondLook::Keep(UnsureStop stop, const FrameBuffer& sweeps, const FrameBuffer& images) {
   KeptStop kept;
-  std::size_t num_bytes = 0;
   for (const LidarSighting& lidar : stop.lidar) {
     const SensorFrame* sweep = sweeps.Find(lidar.utime);
     if (sweep == nullptr) return false;
     kept.sweeps.push_back(*sweep);
-    num_bytes += sweep->bytes.size();
   }
   if (const SensorFrame* image = images.Find(stop.camera.front().utime)) kept.image = *image;
-  if (kept.image) num_bytes += kept.image->bytes.size();
-  if (num_bytes_ + num_bytes > kMaxBytes) return false;
-  num_bytes_ += num_bytes;
+  if (num_bytes_ + NumBytes(kept) > kMaxBytes) return false;
+  num_bytes_ += NumBytes(kept);
   kept.stop = std::move(stop);
   kept_.push_back(std::move(kept));
   return true;
@@ -63,6 +66,7 @@ void SecondLook::Clear() {
 }
 
 std::vector<KeptStop> SecondLook::FindBoards(const std::vector<BoardSample>& samples,
+                                             bool is_newest_spared,
                                              std::vector<std::string>* misses) {
   std::vector<BoardSample> votes = samples;
   for (const KeptStop& kept : kept_) votes.push_back(VoteOf(kept.stop));
@@ -71,11 +75,16 @@ std::vector<KeptStop> SecondLook::FindBoards(const std::vector<BoardSample>& sam
   std::vector<KeptStop> found;
   std::vector<KeptStop> left;
   for (KeptStop& kept : kept_) {
+    if (is_newest_spared && &kept == &kept_.back()) {
+      left.push_back(std::move(kept));
+      continue;
+    }
     const std::string miss = FindBoard(*extrinsic, &kept);
     if (!miss.empty()) misses->push_back(miss);
     (miss.empty() ? found : left).push_back(std::move(kept));
   }
   kept_ = std::move(left);
+  for (const KeptStop& each : found) num_bytes_ -= NumBytes(each);
   return found;
 }
 

@@ -30,13 +30,16 @@ class SecondLook {
 
   void Clear();
 
-  /// The kept stops in whose every sweep the board is where `samples` and the kept stops together
-  /// make the camera's board expect it; they are kept no longer. Those that were looked at in vain
-  /// stay, and their reasons are in `misses`. Nothing without a rough extrinsic.
+  /// @param is_newest_spared  the newest kept stop is not looked at.
+  /// @return the kept stops in whose every sweep the board is where `samples` and the kept stops
+  ///     together make the camera's board expect it; they are kept no longer. Those that were
+  ///     looked at in vain stay, and their reasons are in `misses`. None without a rough extrinsic.
   std::vector<KeptStop> FindBoards(const std::vector<BoardSample>& samples,
+                                   bool is_newest_spared,
                                    std::vector<std::string>* misses);
 
   bool empty() const { return kept_.empty(); }
+  std::size_t size() const { return kept_.size(); }
 
  private:
   std::string FindBoard(const RoughExtrinsic& extrinsic, KeptStop* kept) const;

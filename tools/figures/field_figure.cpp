@@ -9,24 +9,19 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/collect.hpp"
-#include "common/scratch_folder.hpp"
-#include "core/estimation/pose_fit.hpp"
-#include "core/estimation/set_extrinsic.hpp"
+#include "figures/field_set.hpp"
 #include "figures/figures.hpp"
-#include "import/acfr_session.hpp"
 
 namespace voqcal {
 namespace {
+
+constexpr double kDegPerRad = 180.0 / M_PI;
 
 struct FieldArgs {
   std::filesystem::path data;
   std::string only;  // one set's name; empty: all
   bool is_verbose = false;
 };
-
-// Of six dimensions, as rare as 3 sigma of one: 0.27 %.
-constexpr double kSquared3Sigma = 20.06;
 
 // The folders of `data` that have a rig file, by name.
 std::vector<std::filesystem::path> SetsIn(const FieldArgs& args) {
@@ -39,106 +34,54 @@ std::vector<std::filesystem::path> SetsIn(const FieldArgs& args) {
   return sets;
 }
 
-std::size_t CountIn(const OfflineRun& run,
-                    const std::string& module_name,
-                    const std::string& what) {
-  for (const Module* module : run.modules()) {
-    if (module->Name() != module_name) continue;
-    const auto found = module->counters().find(what);
-    return found == module->counters().end() ? 0 : static_cast<std::size_t>(found->second);
+// "deg 0.1 -0.2 0.0 (0.3 0.3 0.4)": the difference, and one sigma of it.
+void PrintAxes(const char* unit,
+               double factor,
+               const Eigen::Vector3d& r,
+               const Eigen::Vector3d& s) {
+  std::printf("  %s %6.2f %6.2f %6.2f", unit, factor * r.x(), factor * r.y(), factor * r.z());
+  std::printf(" (%.2f %.2f %.2f)", factor * s.x(), factor * s.y(), factor * s.z());
+}
+
+void Print(const FieldSet& set, bool is_verbose) {
+  std::printf("%-26s %5zu  %6zu  %5zu  %7zu  %10zu  %5zu  ",
+              set.name.c_str(),
+              set.num_pairs,
+              set.num_camera_boards,
+              set.num_lidar_boards,
+              set.num_samples,
+              set.num_consistent,
+              set.NumWrong());
+  if (std::isnan(set.held_out_mm)) {
+    std::printf("unknown%s%s\n", set.problem.empty() ? "" : ": ", set.problem.c_str());
+  } else {
+    std::printf("%.2f\n", set.held_out_mm);
   }
-  return 0;
-}
-
-// The samples whose board lies farther from where the others' extrinsic puts it than 3 sigma of
-// both covariances allow.
-std::vector<std::int64_t> WrongOnes(const std::vector<const BoardSample*>& samples,
-                                    const Rig& rig,
-                                    bool is_verbose) {
-  std::vector<std::int64_t> wrong;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    std::vector<const BoardSample*> others = samples;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    const PoseFit fit = FitPoses(others, rig.camera, AnalyticExtrinsic(others), {});
-    if (!fit.is_usable) continue;
-    PoseDifference difference = DifferenceOf(*samples[i], rig.camera, fit.T_camera_lidar, {});
-    difference.C += difference.J * fit.covariance * difference.J.transpose();
-    const double squared = difference.SquaredSigmas();
-    if (squared > kSquared3Sigma) wrong.push_back(samples[i]->id);
-    if (!is_verbose) continue;
-    const Vector6d& r = difference.r;
-    const Vector6d sigma = difference.C.diagonal().cwiseSqrt();
-    std::printf("  sample %3lld  sides %d  off by %4.1f sigma",
-                static_cast<long long>(samples[i]->id),
-                NumMeasuredSides(samples[i]->lidar),
-                std::sqrt(squared));
-    std::printf("  deg %5.2f %5.2f %5.2f (%.2f %.2f %.2f)",
-                180 / M_PI * r[0],
-                180 / M_PI * r[1],
-                180 / M_PI * r[2],
-                180 / M_PI * sigma[0],
-                180 / M_PI * sigma[1],
-                180 / M_PI * sigma[2]);
-    std::printf("  mm %6.1f %6.1f %6.1f (%.1f %.1f %.1f)\n",
-                1e3 * r[3],
-                1e3 * r[4],
-                1e3 * r[5],
-                1e3 * sigma[3],
-                1e3 * sigma[4],
-                1e3 * sigma[5]);
+  if (!is_verbose) return;
+  for (const SampleDifference& d : set.differences) {
+    std::printf("  sample %3lld  sides %d  off by %4.1f sigma%s",
+                static_cast<long long>(d.id),
+                d.num_measured_sides,
+                d.sigmas,
+                d.IsWrong() ? " WRONG" : "");
+    PrintAxes("deg", kDegPerRad, d.r.head<3>(), d.sigma.head<3>());
+    PrintAxes("mm", 1e3, d.r.tail<3>(), d.sigma.tail<3>());
+    std::puts("");
   }
-  return wrong;
-}
-
-std::string HeldOutCentre(const OfflineRun& run) {
-  const auto& result = run.assessor().result();
-  if (!result) return "- (" + run.assessor().problem() + ")";
-  if (!std::isfinite(result->held_out.centre_mm.mean)) return "-";
-  char text[64];
-  std::snprintf(text,
-                sizeof(text),
-                "%.2f +- %.2f",
-                result->held_out.centre_mm.mean,
-                result->held_out.centre_mm.std);
-  return text;
-}
-
-void PrintSet(const std::filesystem::path& set, const FieldArgs& args) {
-  const Rig rig = LoadRig(set / "rig.yaml");
-  const ScratchFolder scratch(std::filesystem::temp_directory_path() / "voqcal-field");
-  const std::filesystem::path log = scratch.path() / "raw.lcm";
-  const ImportedFrames frames = ImportAcfrSession(set, rig, 2.0, log);
-  const std::filesystem::path session = scratch.path() / "session";
-  std::filesystem::create_directories(session);
-  InputPaths input;
-  input.log = log;
-  const auto run = CollectSamples(rig, input, session);
-  run->Finish(/*is_collecting_only=*/false);
-  const std::vector<BoardSample> all = run->SamplesAsChosen();
-  const auto samples = SamplesWithout(all, run->averaged().inconsistent_ids);
-  const auto wrong = WrongOnes(samples, rig, args.is_verbose);
-  std::printf("%-26s %5zu  %6zu  %5zu  %7zu  %10zu  %5zu  %s\n",
-              set.filename().c_str(),
-              frames.num_clouds,
-              CountIn(*run, "camera_board_detector", "boards"),
-              CountIn(*run, "lidar_board_detector", "boards"),
-              all.size(),
-              samples.size(),
-              wrong.size(),
-              HeldOutCentre(*run).c_str());
-  if (args.is_verbose) std::printf("  %s\n", CountsOf(*run).c_str());
+  std::printf("  %s\n", set.counts.c_str());
 }
 
 void PrintField(const FieldArgs& args) {
   std::puts(
       "set                        pairs  camera  lidar  samples  consistent  wrong  held-out "
       "centre mm");
-  for (const std::filesystem::path& set : SetsIn(args)) {
+  for (const std::filesystem::path& folder : SetsIn(args)) {
     try {
-      PrintSet(set, args);
+      Print(MeasureFieldSet(folder), args.is_verbose);
     } catch (const std::exception& error) {
-      std::printf("%-26s %s\n", set.filename().c_str(), error.what());
+      std::printf("%-26s %s\n", folder.filename().c_str(), error.what());
     }
+    std::fflush(stdout);
   }
 }
 

@@ -180,7 +180,7 @@ std::string LidarBoardJson(const lidar_board_t& message) {
   Json json = Of(Slot::kLidarBoard);
   json["utime"] = message.utime;
   json["miss"] = message.miss;
-  if (!message.candidates.empty()) {
+  if (message.miss.empty() && !message.candidates.empty()) {
     json["corners_lidar_m"] = Table(message.candidates[0].pose.corners_m);
     json["num_points"] = message.candidates[0].num_points;
   }

@@ -40,6 +40,7 @@ void LidarBoardDetectorNode::OnPoints(const pointcloud2_t& message) {
       Count("boards");
     } else {
       miss = ToString(found.error());
+      candidates = found.error().unsure;
       Count(ToString(found.error().miss));
     }
   } else {

@@ -167,7 +167,9 @@ LidarSighting SightingFromMessage(const lidar_board_t& message) {
   sighting.utime = message.utime;
   sighting.miss = message.miss;
   for (const lidar_candidate_t& candidate : message.candidates) {
-    if (sighting.board) {
+    if (!message.miss.empty()) {
+      sighting.unsure.push_back(FromMessage(candidate));
+    } else if (sighting.board) {
       sighting.runners_up.push_back(FromMessage(candidate));
     } else {
       sighting.board = FromMessage(candidate);

@@ -32,7 +32,7 @@ camera_board_t ToMessage(const CameraBoard& board);
 CameraBoard FromMessage(const camera_board_t& message);
 
 /// What the lidar detector found in one sweep.
-/// @param candidates  best first; empty if there is no board.
+/// @param candidates  best first; if there is no board, what may be it, but may be something else.
 /// @param miss        why there is none; empty if there is one.
 lidar_board_t LidarBoardMessage(const std::vector<LidarBoard>& candidates,
                                 const std::string& miss,

@@ -2,8 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/diagnosis.hpp"
@@ -117,6 +120,9 @@ struct Rig {
   Channels channels;
   BoardSpec board;
   CameraModel camera;
+  /// Roughly where the camera is (within some 5 degrees and 0.2 m), if anyone knows: where to look
+  /// for boards that the lidar alone is unsure of. The result does not lean on it.
+  std::optional<Eigen::Isometry3d> T_camera_lidar_guess;
   LidarDriverOptions lidar_driver;
   LidarSensorOptions lidar_sensor;  ///< Under lidar_driver; for source kSensor.
   CameraDriverOptions camera_driver;

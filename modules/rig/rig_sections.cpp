@@ -106,7 +106,9 @@ void ReadLens(YamlSection* section, CameraModel* camera) {
   std::copy(distortion.begin(), distortion.end(), camera->distortion.begin());
 }
 
-void ReadCamera(YamlSection* top, CameraModel* camera) {
+void ReadCamera(YamlSection* top,
+                CameraModel* camera,
+                std::optional<Eigen::Isometry3d>* T_camera_lidar_guess) {
   YamlSection section = top->RequiredSection("camera");
   if (!top->Has("camera")) return;
   ReadLens(&section, camera);
@@ -117,6 +119,12 @@ void ReadCamera(YamlSection* top, CameraModel* camera) {
   section.ReadRequired("cx_px", &camera->cx_px);
   section.ReadRequired("cy_px", &camera->cy_px);
   if (section.IsComplete()) section.AddProblems(camera->Problems());
+  YamlSection guess = section.Section("T_camera_lidar_guess");
+  if (section.Has("T_camera_lidar_guess")) {
+    T_camera_lidar_guess->emplace(Eigen::Isometry3d::Identity());
+    ReadTransform(&guess, &**T_camera_lidar_guess);
+  }
+  guess.RefuseUnknownKeys();
   section.RefuseUnknownKeys();
 }
 
@@ -338,7 +346,7 @@ void ReadRigSections(YamlDocument* document, Rig* rig) {
   ReadLcm(&top, rig, &channel_prefix);
   ReadChannels(&top, channel_prefix, &rig->channels);
   ReadBoard(&top, &rig->board);
-  ReadCamera(&top, &rig->camera);
+  ReadCamera(&top, &rig->camera, &rig->T_camera_lidar_guess);
   ReadLidarDriver(&top, rig->path, &rig->lidar_driver, &rig->lidar_sensor);
   ReadCameraDriver(&top, rig->path, &rig->camera_driver);
   ReadSimulation(&top, &rig->simulation);

@@ -19,6 +19,9 @@ namespace {
 // Of each sensor: some seconds of JPEG or of a 128-beam lidar, 36 raw images of 1920 x 1208.
 constexpr std::size_t kMaxBufferBytes = 256U << 20U;
 
+/// Samples and stops that the lidar was unsure of, together, before any tells where another is.
+constexpr std::size_t kFirstLook = 5;
+
 /// A reason in CALIB_EVENT.
 constexpr char kByCommand[] = "by command";
 
@@ -32,6 +35,8 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
       picker_(rig.board, rig.sample_collector),
       sweeps_(kMaxBufferBytes),
       images_(kMaxBufferBytes),
+      second_look_(rig),
+      next_look_(kFirstLook),
       session_(session_folder),
       log_sha256_(session_.Sha256()) {
   picker_.SetKnown(session_.samples());
@@ -112,8 +117,36 @@ bool SampleCollectorNode::AreDetectorsPastFinish() const {
   return finish_utime_ && std::min(newest_lidar_utime_, newest_camera_utime_) > *finish_utime_;
 }
 
+void SampleCollectorNode::LookAgain(bool is_resting) {
+  constexpr int kMaxRounds =
+      3;  // what is found makes the extrinsic, and so the place, more certain
+  std::vector<std::string> misses;
+  for (int round = 0; round < kMaxRounds && !second_look_.empty(); ++round) {
+    misses.clear();
+    const std::vector<KeptStop> found = second_look_.FindBoards(samples(), is_resting, &misses);
+    for (const KeptStop& each : found) {
+      const PickerDecision decision = picker_.TakeStop(each.stop);
+      if (!decision.accepted) continue;  // the lidar saw it by itself meanwhile
+      Count("found at a second look");
+      const SensorFrame* image = each.image ? &*each.image : nullptr;
+      Accept(*decision.accepted, {&each.sweeps.front(), image}, "at a second look");
+    }
+    if (found.empty()) break;
+  }
+  if (is_resting) return;  // there will be another look
+  for (const std::string& miss : misses) Count("second look: " + miss);
+}
+
+void SampleCollectorNode::LookAgainIfDue() {
+  const std::size_t num = samples().size() + second_look_.size();
+  if (num < next_look_) return;
+  LookAgain(/*is_resting=*/true);
+  next_look_ = num + num / 2;
+}
+
 void SampleCollectorNode::SayFinished() {
   CancelCapture();  // the operator wants no more
+  LookAgain(/*is_resting=*/false);
   is_finish_requested_ = false;
   is_finished_ = true;
   Announce(samples().empty() ? 0 : samples().back().utime, "finished", 0, "");
@@ -161,6 +194,8 @@ void SampleCollectorNode::Reset(std::int64_t utime) {
   log_sha256_ = session_.Sha256();
   picker_.SetKnown({});
   CancelCapture();
+  second_look_.Clear();
+  next_look_ = kFirstLook;
   is_finish_requested_ = false;
   is_finished_ = false;
   Announce(utime, "reset", 0, "");
@@ -190,6 +225,9 @@ void SampleCollectorNode::Discard(const command_t& message) {
 
 void SampleCollectorNode::Decide(const std::vector<PickerDecision>& decisions) {
   for (const PickerDecision& decision : decisions) {
+    if (decision.unsure && !second_look_.Keep(*decision.unsure, sweeps_, images_)) {
+      Count("no room for a second look");
+    }
     if (decision.accepted) {
       AcceptWithScene(*decision.accepted);
     } else {
@@ -200,6 +238,7 @@ void SampleCollectorNode::Decide(const std::vector<PickerDecision>& decisions) {
                0,
                detail.empty() ? decision.reason : decision.reason + ": " + detail);
     }
+    LookAgainIfDue();
   }
 }
 

@@ -11,6 +11,7 @@
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/rig.hpp"
+#include "sample_collector/second_look.hpp"
 #include "sample_collector/session_log.hpp"
 #include "voqcal/camera_board_t.hpp"
 #include "voqcal/command_t.hpp"
@@ -35,7 +36,8 @@ class SampleCollectorNode : public Module {
   /// Takes a sample that another program extracted; it has no scene.
   void Accept(const BoardSample& sample) { Accept(sample, {}, ""); }
 
-  /// No more frames will come: judges what waits and says so in CALIB_SAMPLES. The command "finish"
+  /// No more frames will come: judges what waits, looks again where the lidar was unsure, and says
+  /// so in CALIB_SAMPLES. The command "finish"
   /// does the same once no frame has come for a second, since detectors may still be at work. Where
   /// sensors go on, it is done once both detectors are past the frames that had come before it.
   void Finish();
@@ -56,6 +58,12 @@ class SampleCollectorNode : public Module {
   void Reset(std::int64_t utime);
   void CancelCapture();
   void Accept(const BoardSample& sample, const SampleScene& scene, const std::string& remark);
+  /// Into the sweeps of stops that the lidar alone was unsure of, as far as the samples and these
+  /// stops now tell where to look. `is_resting`: the board may still be at the newest of them,
+  /// where the lidar may yet see it by itself.
+  void LookAgain(bool is_resting);
+  /// As the session goes: whenever there is half as much again to tell where to look.
+  void LookAgainIfDue();
   /// With what was seen at its first frame, if both frames are at hand. The first sample after the
   /// command "capture" is the captured one (SamplePicker::RequestCapture).
   void AcceptWithScene(const BoardSample& sample);
@@ -71,6 +79,8 @@ class SampleCollectorNode : public Module {
   SamplePicker picker_;
   FrameBuffer sweeps_;
   FrameBuffer images_;
+  SecondLook second_look_;
+  std::size_t next_look_;  // at so many samples and kept stops
   SessionLog session_;
   std::string log_sha256_;
   std::int64_t event_seq_ = 0;

@@ -51,6 +51,9 @@ const char* TextOn(LidarBoardMiss miss) {
       return "check board.width_m and height_m";
     case LidarBoardMiss::kFlat:
       return "turn the board's face more towards the lidar";
+    case LidarBoardMiss::kJoined:
+      return "hold the board free, off the ground and away from what it touches; check "
+             "board.width_m and height_m";
     case LidarBoardMiss::kCutOff:
     case LidarBoardMiss::kHidden:
       return "hold the board where the lidar sees all of it; check board.width_m and height_m";

@@ -14,6 +14,7 @@
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
+#include "core/selection/offset_sign.hpp"
 #include "files/atomic_file.hpp"
 #include "messaging/log.hpp"
 #include "report/write_report.hpp"
@@ -88,13 +89,16 @@ void RunCalibrate(const CalibrateArgs& args) {
   if (!args.bag.paths.empty()) input.log = ImportBag(rig, args.bag, scratch.path());
   const auto run = CollectSamples(rig, input, scratch.path());
   run->Finish(/*is_collecting_only=*/false);
+  const std::string wrong_sign = WrongOffsetSign(run->samples(), rig.board);
   if (!run->assessor().result()) {
-    throw std::runtime_error(Given(args) + ": no calibration: " + run->assessor().problem() + " (" +
-                             CountsOf(*run) + ")" + EarlierResultIn(args.out) +
-                             FailureAdvice(*run));
+    throw std::runtime_error(
+        Given(args) + ": no calibration: " + run->assessor().problem() + " (" +
+        CountsOf(*run) + ")" + EarlierResultIn(args.out) + FailureAdvice(*run) +
+        (wrong_sign.empty() ? "" : "\n" + wrong_sign));
   }
   const std::string report_problem = WriteReport(rig, *run, scratch.path());
   Deliver(scratch.path(), args.out);
+  if (!wrong_sign.empty()) spdlog::warn("{}: {}", rig.path.string(), wrong_sign);
   if (!report_problem.empty()) spdlog::warn("no {}: {}", kReportName, report_problem);
   Print(args, *run, report_problem.empty());
   RequireVerdict(VerdictOf(*run->assessor().result()), args.demand);

@@ -11,6 +11,12 @@ namespace {
 
 std::string Tenths(double value) { return std::isnan(value) ? "-" : Format("%.1f", value); }
 
+// "0.3 0.6 0.4 mm", a line's end; "unknown" where the poses are too few to tell.
+std::string SigmaText(const Eigen::Vector3d& sigma, const char* format, const char* unit) {
+  if (!sigma.allFinite()) return "unknown\n";
+  return Format(format, sigma.x(), sigma.y(), sigma.z()) + unit;
+}
+
 /// The headline, then what is not good.
 std::string VerdictLines(const Verdict& verdict) {
   std::string text = "verdict  " + verdict.headline + "\n";
@@ -27,28 +33,28 @@ std::string TransformLines(const CalibrationResult& result) {
   const Vector6d sigma = result.covariance.diagonal().cwiseSqrt();
   return Format(
              "T_camera_lidar (p_camera = T_camera_lidar * p_lidar)\n"
-             "  translation_m    %9.5f %9.5f %9.5f   1 sigma %.1f %.1f %.1f mm\n",
+             "  translation_m    %9.5f %9.5f %9.5f   1 sigma ",
              t.x(),
              t.y(),
-             t.z(),
-             1e3 * sigma[3],
-             1e3 * sigma[4],
-             1e3 * sigma[5]) +
-         Format("  quaternion_xyzw  %9.6f %9.6f %9.6f %9.6f   1 sigma %.3f %.3f %.3f deg\n",
-                q.x(),
-                q.y(),
-                q.z(),
-                q.w(),
-                kDegPerRad * sigma[0],
-                kDegPerRad * sigma[1],
-                kDegPerRad * sigma[2]);
+             t.z()) +
+         SigmaText(1e3 * sigma.tail<3>(), "%.1f %.1f %.1f", " mm\n") +
+         Format(
+             "  quaternion_xyzw  %9.6f %9.6f %9.6f %9.6f   1 sigma ", q.x(), q.y(), q.z(), q.w()) +
+         SigmaText(kDegPerRad * sigma.head<3>(), "%.3f %.3f %.3f", " deg\n");
+}
+
+// The average is not held out: its own samples flatter it.
+std::string TrialText(const MethodTrial& trial) {
+  if (std::isnan(trial.ErrorMm())) return " unknown";
+  const bool is_own = trial.method == RefineMethod::kAverage;
+  return Format(" %.2f mm", trial.ErrorMm()) + (is_own ? " on its own" : "");
 }
 
 std::string MethodLines(const CalibrationResult& result) {
   std::string text = "method  " + ToString(result.method) + " (error on poses held out:";
   for (const MethodTrial& trial : result.trials) {
     text += (&trial == &result.trials[0] ? " " : ", ") + ToString(trial.method) +
-            (trial.problem.empty() ? Format(" %.2f mm", trial.ErrorMm()) : ": " + trial.problem);
+            (trial.problem.empty() ? TrialText(trial) : ": " + trial.problem);
   }
   text += ")\n";
   if (!result.lidar_bias.IsObservable()) return text + "lidar's range errors  not estimated\n";
@@ -86,8 +92,8 @@ std::string SceneLines(const CalibrationResult& result) {
   for (const auto* bins : {&result.held_out_by_cell, &result.held_out_by_range}) {
     std::string line;
     for (const ScoreBin& bin : *bins) {
-      line += (line.empty() ? "  " : "; ") + bin.name +
-              Format(" %.1f mm (%zu)", bin.score.centre_mm.mean, bin.score.poses.size());
+      line += (line.empty() ? "  " : "; ") + bin.name + " " + Tenths(bin.score.centre_mm.mean) +
+              Format(" mm (%zu)", bin.score.poses.size());
     }
     text += line + "\n";
   }
@@ -121,6 +127,11 @@ std::string DiagnosisLines(const Diagnosis& diagnosis) {
 }  // namespace
 
 std::string Summary(const SceneScore& score) {
+  if (std::isnan(score.centre_mm.mean)) {
+    return std::isnan(score.normal_deg.mean)
+               ? "unknown"
+               : Format("centre unknown; normals %.2f deg", score.normal_deg.mean);
+  }
   return Format(
       "centre %.2f +- %.2f mm (largest %.2f), %.2f +- %.2f px; corners %.1f mm; "
       "normals %.2f deg",
@@ -143,9 +154,8 @@ std::string Summary(const CalibrationResult& result) {
           std::to_string(result.averaged.num_kept) + " of " +
           std::to_string(result.averaged.num_sets) + " sets kept)\n";
   text += LensLines(result);
-  text +=
-      Format("lidar's boards  sum of the edges' errors (e_dim) %.1f mm, median of the samples\n",
-             result.e_dim_mm);
+  text += "lidar's boards  sum of the edges' errors (e_dim) " + Tenths(result.e_dim_mm) +
+          " mm, median of the samples\n";
   text += SceneLines(result) + DiagnosisLines(result.diagnosis);
   for (const RejectedSample& rejected : result.rejected) {
     text += "left out\n  sample " + std::to_string(rejected.id) + ": " + rejected.reason + "\n";

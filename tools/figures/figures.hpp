@@ -9,6 +9,7 @@ namespace voqcal {
 void AddAccuracy(CLI::App* app);
 void AddConsistency(CLI::App* app);
 void AddCoverage(CLI::App* app);
+void AddField(CLI::App* app);
 void AddGuidance(CLI::App* app);
 void AddGuidanceBound(CLI::App* app);
 void AddSubsets(CLI::App* app);

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   voqcal::AddCameraDetection(&app);
   voqcal::AddConsistency(&app);
   voqcal::AddCoverage(&app);
+  voqcal::AddField(&app);
   voqcal::AddGuidance(&app);
   voqcal::AddGuidanceBound(&app);
   voqcal::AddLidarDetection(&app);

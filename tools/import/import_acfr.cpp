@@ -1,28 +1,15 @@
 // import_acfr: the folders of a cam_lidar_calibration session to an LCM log.
 
-#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
 #include <string>
-#include <utility>
-#include <vector>
-
-#include <spdlog/spdlog.h>
 #include <system_error>
 
 #include "common/output_file.hpp"
-#include "common/progress.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
-#include "files/atomic_file.hpp"
-#include "files/point_cloud_file.hpp"
-#include "messaging/convert_image.hpp"
-#include "messaging/convert_points.hpp"
-#include "messaging/encode.hpp"
-#include "messaging/log.hpp"
-#include "rig/frame_folder.hpp"
-#include "rig/frame_pairing.hpp"
+#include "import/acfr_session.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {
@@ -36,150 +23,19 @@ struct ImportArgs {
   std::string pair = "names";
 };
 
-// Numbers the events; their time is the frame's, so that lcm-logplayer paces them.
-class EventWriter {
- public:
-  explicit EventWriter(const std::filesystem::path& log) : writer_(log) {}
-
-  template <typename Message>
-  void Write(const std::string& channel, const Message& message) {
-    writer_.Write({next_number_++, message.utime, channel, EncodeMessage(message)});
-  }
-  void Flush() { writer_.Flush(); }
-
- private:
-  LogWriter writer_;
-  std::int64_t next_number_ = 0;
-};
-
-FrameOptions FolderOptions(const std::filesystem::path& folder,
-                            const std::string& file_ending,
-                            double rate_hz) {
-  FrameOptions options;
-  options.folder = folder;
-  options.file_ending = file_ending;
-  options.rate_hz = rate_hz;
-  return options;
-}
-
-// cam_lidar_calibration writes three clouds a pose, of which the full one is wanted; others one.
-std::string CloudEnding(const std::filesystem::path& folder) {
-  const std::string ending = "_full.pcd";
-  std::error_code error;  // a missing folder is told by who reads it
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    const bool is_full = name.front() != '.' && name.size() >= ending.size() &&
-                         name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
-    if (is_full) return ending;
-  }
-  return "";
-}
-
-bool IsOrder(const ImportArgs& args) { return args.pair == "order"; }
-
-image_t ImageMessage(const FrameFile& file, std::int64_t seq) {
-  const std::string bytes = ReadWholeFile(file.path);
-  try {
-    const image_t message = EncodedToMessage({bytes.begin(), bytes.end()}, file.utime, seq);
-    RequireSound(message);
-    return message;
-  } catch (const std::exception& error) {
-    throw std::runtime_error(file.path.string() + ": " + error.what());
-  }
-}
-
-struct Session {
-  /// @throws std::runtime_error naming the folder that is missing or empty.
-  explicit Session(const ImportArgs& args)
-      : name(args.session.filename().string()),
-        clouds(FolderOptions(args.session / "pcd", CloudEnding(args.session / "pcd"), args.rate_hz),
-               {".pcd", ".ply"},
-               IsOrder(args)),
-        images(FolderOptions(args.session / "images", "", args.rate_hz),
-               {".png", ".jpg", ".jpeg"},
-               IsOrder(args)) {}
-
-  std::string name;
-  FrameFolder clouds;
-  FrameFolder images;
-};
-
-/// Pieces of one sort: those that went into the log, and those that could not be read.
-class Pieces {
- public:
-  explicit Pieces(std::string what) : what_(std::move(what)) {}
-
-  /// Writes one, or counts it as left out: one bad piece must not cost the others.
-  template <typename Write>
-  void Take(const Write& write) try {
-    write(num_taken_);
-    ++num_taken_;
-  } catch (const std::runtime_error& error) {
-    if (num_left_out_++ < kMaxNamed) spdlog::warn("left out: {}", error.what());
-  }
-
-  std::size_t num() const { return static_cast<std::size_t>(num_taken_) + num_left_out_; }
-
-  /// @throws std::runtime_error if there is none.
-  std::string Words() const {
-    if (num_taken_ == 0) throw std::runtime_error("none of the " + what_ + " can be read");
-    const std::string rest =
-        num_left_out_ == 0 ? "" : " (" + std::to_string(num_left_out_) + " left out)";
-    return std::to_string(num_taken_) + " " + what_ + rest;
-  }
-
- private:
-  static constexpr std::size_t kMaxNamed = 5;
-  std::string what_;
-  std::int64_t num_taken_ = 0;
-  std::size_t num_left_out_ = 0;
-};
-
-void WriteFrames(Session session, const Rig& rig, const std::filesystem::path& log) {
-  Progress progress("importing " + session.name);
-  EventWriter events(log);
-  Pieces clouds("clouds");
-  Pieces images("images");
-  auto cloud = session.clouds.Next();
-  auto image = session.images.Next();
-  while (cloud || image) {
-    if (cloud && (!image || cloud->utime <= image->utime)) {
-      clouds.Take([&](std::int64_t seq) {
-        events.Write(
-            rig.channels.lidar_points,
-            ToMessage(ReadPointCloud(cloud->path), cloud->utime, static_cast<std::int32_t>(seq)));
-      });
-      cloud = session.clouds.Next();
-    } else {
-      images.Take([&](std::int64_t seq) {
-        const image_t message = ImageMessage(*image, seq);
-        events.Write(rig.channels.camera_info, ToMessage(rig.camera, image->utime, seq));
-        events.Write(rig.channels.camera_image, message);
-      });
-      image = session.images.Next();
-    }
-    progress.Show(static_cast<double>(clouds.num() + images.num()) /
-                      static_cast<double>(session.clouds.size() + session.images.size()),
-                  std::to_string(images.num()) + " images");
-  }
-  events.Flush();
-  std::cout << clouds.Words() << " and " << images.Words() << '\n';
-}
-
 void Import(const ImportArgs& args) {
   const Rig rig = LoadRig(args.rig);
-  Session session(args);
-  const std::string pairing =
-      PairingOf(session.clouds, session.images, rig.sample_collector.max_pair_offset_s);
   args.out.Prepare();
   const ScratchFolder scratch(args.out.path);
   const std::filesystem::path log = scratch.path() / "import.lcm";
-  WriteFrames(std::move(session), rig, log);
+  const ImportedFrames frames =
+      ImportAcfrSession(args.session, rig, {args.rate_hz, args.pair == "order"}, log);
   std::error_code error;
   std::filesystem::rename(log, args.out.path, error);
   if (error)
     throw std::runtime_error(args.out.path.string() + ": cannot write: " + error.message());
-  std::cout << pairing << "\nwritten\n  " << args.out.path.string() << '\n';
+  std::cout << frames.text << '\n'
+            << frames.pairing << "\nwritten\n  " << args.out.path.string() << '\n';
 }
 
 }  // namespace

@@ -29,6 +29,11 @@ def mean(values):
     return sum(values) / len(values) if values else None
 
 
+def sigma(variance):
+    """None: the poses are too few to tell."""
+    return None if variance is None else variance**0.5
+
+
 def held_out(sample, error="centre_mm"):
     """The error of a used sample by the extrinsic refined without it; None if there is none."""
     return sample["errors"]["held_out"][error] if sample["is_used"] else None
@@ -201,7 +206,7 @@ def report(data, overlays, template):
         result=result,
         style=(HERE / "report.css").read_text(encoding="utf-8"),
         verdict=data["verdict"],
-        sigma=[result["covariance"][i][i] ** 0.5 for i in range(6)],
+        sigma=[sigma(result["covariance"][i][i]) for i in range(6)],
         histograms=set_histograms(data["sets"]["chosen"]),
         voq=voq_figure(data["sets"]),
         cells=cells_figure(samples, data["rig"]["camera"]),

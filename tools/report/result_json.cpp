@@ -107,6 +107,9 @@ Json SamplePart(const BoardSample& sample, const CameraModel& camera) {
                {"camera_centre_m", List(centre_camera_m)},
                {"camera_normal", List(sample.camera.pose.normal)},
                {"camera_reprojection_rms_px", sample.camera.reprojection_rms_px}};
+  Json sides = Json::array();
+  for (const SideView side : sample.lidar.sides) sides.push_back(ToString(side));
+  part["lidar_sides"] = sides;
   part["camera_centre_px"] = camera.IsInFront(centre_camera_m)
                                  ? List(camera.Project<double>(centre_camera_m))
                                  : Json(nullptr);

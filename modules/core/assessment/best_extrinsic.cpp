@@ -84,6 +84,10 @@ const MethodTrial& Choose(const std::vector<MethodTrial>& trials,
   return *best;
 }
 
+SceneScore NoScore(std::size_t num_samples) {
+  return SummariseScores(std::vector<PoseScore>(num_samples));
+}
+
 double CentreRmsPx(const SceneScore& scene) {
   return std::hypot(scene.centre_px.mean, scene.centre_px.std);
 }
@@ -129,6 +133,7 @@ BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias) {
   corrected.num_frames = sample.num_frames;
   corrected.camera = sample.camera;
   corrected.lidar.pose = CorrectedPose(sample.lidar, bias);
+  corrected.lidar.sides = sample.lidar.sides;
   corrected.lidar.edge_lengths_m = sample.lidar.edge_lengths_m;
   return corrected;
 }
@@ -175,6 +180,7 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
   switch (chosen.method) {
     case RefineMethod::kAverage:
       best.covariance = average.spread.cwiseAbs2().asDiagonal();
+      best.held_out = NoScore(samples.size());  // its trial's score is of its own samples
       break;
     case RefineMethod::kReprojection:
       best.T_camera_lidar = reprojection.T_camera_lidar;

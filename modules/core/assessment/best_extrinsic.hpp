@@ -58,7 +58,7 @@ struct BestExtrinsic {
   /// Of [rotation_rad; translation_m], perturbed on the left (camera side).
   Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
   double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();  ///< Of the centres.
-  SceneScore held_out;                                                    ///< The chosen method's.
+  SceneScore held_out;  ///< The chosen method's; all NaN of the average, which holds none out.
   std::vector<MethodTrial> trials;  ///< Average, reprojection, likelihood.
   /// What the likelihood found, also if another method was chosen; its status says if it did.
   LikelihoodExtrinsic likelihood;

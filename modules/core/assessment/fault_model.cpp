@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/board/half_turn.hpp"
+#include "core/board/what_was_measured.hpp"
 #include "core/camera_detection/planar_pose.hpp"
 #include "core/geometry/rigid.hpp"
 
@@ -213,6 +214,7 @@ std::vector<FaultEquation> MakeFaultEquations(const std::vector<const BoardSampl
                                               const Eigen::Isometry3d& T_camera_lidar) {
   std::vector<FaultEquation> equations;
   for (const BoardSample* sample : samples) {
+    if (!IsCentreMeasured(sample->lidar)) continue;
     equations.push_back(MakeEquation(*sample, board, camera, T_camera_lidar));
   }
   return equations;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/board/half_turn.hpp"
+#include "core/board/what_was_measured.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/units.hpp"
 
@@ -20,7 +21,14 @@ double MeanCornerDistanceM(const BoardPose& pose_lidar,
   return sum_m / 4.0;
 }
 
-Spread SpreadOf(const std::vector<PoseScore>& poses, double PoseScore::*figure) {
+// Of a board whose centre the lidar did not measure, only the normal is scored: such a pose counts
+// where it can. One without any score leaves the scene without one.
+Spread SpreadOf(const std::vector<PoseScore>& all, double PoseScore::*figure) {
+  std::vector<PoseScore> poses;
+  for (const PoseScore& pose : all) {
+    if (std::isnan(pose.*figure) && std::isfinite(pose.normal_deg)) continue;
+    poses.push_back(pose);
+  }
   Spread spread;
   if (poses.empty()) return spread;
   const double num_poses = static_cast<double>(poses.size());
@@ -58,10 +66,12 @@ PoseScore ScorePose(const BoardSample& sample,
   const Eigen::Vector3d centre_camera_m = T_camera_lidar * lidar.centre_m;
   if (!camera.IsInFront(centre_camera_m) || !camera.IsInFront(seen.centre_m)) return {};
   PoseScore score;
+  score.normal_deg =
+      kDegPerRad * AngleBetween(T_camera_lidar.linear() * lidar.normal, seen.normal);
+  if (!IsCentreMeasured(sample.lidar)) return score;
   score.centre_px = (camera.Project(centre_camera_m) - camera.Project(seen.centre_m)).norm();
   score.centre_mm = kMmPerM * MetresPerPixel(seen, camera) * score.centre_px;
   score.corner_mm = kMmPerM * MeanCornerDistanceM(lidar, seen, T_camera_lidar);
-  score.normal_deg = kDegPerRad * AngleBetween(T_camera_lidar.linear() * lidar.normal, seen.normal);
   return score;
 }
 

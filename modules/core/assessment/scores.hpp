@@ -14,7 +14,8 @@
 namespace voqcal {
 
 /// How well an extrinsic fits one pose. All NaN if it puts the board where the camera cannot see
-/// it, or if there is no extrinsic to score.
+/// it, or if there is no extrinsic to score; all but the normal if the lidar did not measure where
+/// the board's centre is (IsCentreMeasured).
 struct PoseScore {
   double centre_px =
       std::numeric_limits<double>::quiet_NaN();  ///< Reprojection error of the board's centre.

@@ -14,10 +14,6 @@ std::vector<std::string> BoardSpec::Problems() const {
   problems.Require(num_corners_x >= 3, "num_corners_x must be at least 3", num_corners_x);
   problems.Require(num_corners_y >= 3, "num_corners_y must be at least 3", num_corners_y);
   if (!problems.empty()) return problems.lines();
-  // Both detectors tell half-turns apart at most: a square's quarter-turns would go unnoticed.
-  problems.Require(std::abs(width_m - height_m) >= 0.05 * std::max(width_m, height_m),
-                   "width_m and height_m must differ by at least 5 %: width_m",
-                   width_m);
   // The pattern has one square more than inner corners on each axis; a partial square may be
   // missing.
   const double span_x_m = SquaresTo(num_corners_x - 1) * square_m;

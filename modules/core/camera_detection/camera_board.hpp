@@ -17,7 +17,7 @@ namespace voqcal {
 struct CameraBoardOptions {
   double max_reprojection_rms_px = 1.5;  ///< A worse fit is not this board, or not this camera.
   /// Edges between squares that are wider make the image blurred: as an angle of view, so that it
-  /// holds for every resolution. Sharp edges of 2 px are always allowed.
+  /// holds for every resolution. Sharp edges of 3 px are always allowed.
   double max_edge_width_rad = 0.003;
   /// Edges wider than this share of a square run into each other: there is no pose to trust.
   double max_edge_width_squares = 0.7;

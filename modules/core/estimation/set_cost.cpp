@@ -1,9 +1,26 @@
 #include "core/estimation/set_cost.hpp"
 
+#include <Eigen/Eigenvalues>
+
+#include "core/board/what_was_measured.hpp"
+
 namespace voqcal {
 
+Eigen::Matrix3d CentreTrust(const LidarBoard& lidar,
+                            const Eigen::Matrix3d& R_camera_lidar,
+                            double sigma_centre_m) {
+  if (IsWhole(lidar)) return Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d covariance =
+      R_camera_lidar * lidar.pose.covariance.bottomRightCorner<3, 3>() * R_camera_lidar.transpose();
+  const Eigen::Matrix3d ratio =
+      Eigen::Matrix3d::Identity() + covariance / (sigma_centre_m * sigma_centre_m);
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(ratio).operatorInverseSqrt();
+}
+
 std::vector<SetPose> SetPosesOf(const std::vector<const BoardSample*>& set,
-                                const CameraModel& camera) {
+                             const CameraModel& camera,
+                             const Eigen::Matrix3d& R_camera_lidar,
+                             const SetExtrinsicOptions& options) {
   std::vector<SetPose> poses;
   for (const BoardSample* sample : set) {
     const BoardPose& lidar = sample->lidar.pose;
@@ -16,6 +33,13 @@ std::vector<SetPose> SetPosesOf(const std::vector<const BoardSample*>& set,
                      camera.Project(seen.centre_m),
                      ((c[1] - c[0]) + (c[2] - c[3])).normalized(),
                      ((c[2] - c[1]) + (c[3] - c[0])).normalized()});
+    SetPose& pose = poses.back();
+    pose.centre_trust = CentreTrust(sample->lidar, R_camera_lidar, options.sigma_centre_m);
+    if (!IsWhole(sample->lidar)) {
+      // The pixel has no more to say than the least trusted direction in space.
+      pose.centre_px_trust =
+          Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(pose.centre_trust).eigenvalues()[0];
+    }
   }
   return poses;
 }
@@ -54,16 +78,16 @@ bool SetCost::Evaluate(const SetPose& pose,
   *r << pose.edge_x_camera.dot(normal) / options.sigma_normal_rad,
       pose.edge_y_camera.dot(normal) / options.sigma_normal_rad,
       (normal - pose.normal_camera) / options.sigma_normal_rad,
-      (centre_m - pose.centre_camera_m) / options.sigma_centre_m,
-      (centre_px - pose.centre_px) / options.sigma_centre_px;
+      pose.centre_trust * ((centre_m - pose.centre_camera_m) / options.sigma_centre_m),
+      pose.centre_px_trust * (centre_px - pose.centre_px) / options.sigma_centre_px;
   if (J == nullptr) return true;
   const Matrix36d J_normal = at.DirectionJacobian(normal);
   const Matrix36d J_centre = at.PointJacobian(centre_m);
   J->row(0) = pose.edge_x_camera.transpose() * J_normal / options.sigma_normal_rad;
   J->row(1) = pose.edge_y_camera.transpose() * J_normal / options.sigma_normal_rad;
   J->middleRows<3>(2) = J_normal / options.sigma_normal_rad;
-  J->middleRows<3>(5) = J_centre / options.sigma_centre_m;
-  J->middleRows<2>(8) = J_px_centre * J_centre / options.sigma_centre_px;
+  J->middleRows<3>(5) = pose.centre_trust * J_centre / options.sigma_centre_m;
+  J->middleRows<2>(8) = pose.centre_px_trust * J_px_centre * J_centre / options.sigma_centre_px;
   return true;
 }
 

@@ -18,10 +18,23 @@ struct SetPose {
   Eigen::Vector3d centre_lidar_m, centre_camera_m;
   Eigen::Vector2d centre_px;
   Eigen::Vector3d edge_x_camera, edge_y_camera;  ///< Unit, along the board's two directions.
+  /// What the centre's residuals are multiplied by besides: one for a whole sighting, less where
+  /// open sides leave the lidar's centre uncertain.
+  Eigen::Matrix3d centre_trust = Eigen::Matrix3d::Identity();
+  double centre_px_trust = 1.0;
 };
 
+/// @param R_camera_lidar  roughly: turns what open sides leave uncertain into the camera's axes.
 std::vector<SetPose> SetPosesOf(const std::vector<const BoardSample*>& set,
-                                const CameraModel& camera);
+                             const CameraModel& camera,
+                             const Eigen::Matrix3d& R_camera_lidar,
+                             const SetExtrinsicOptions& options);
+
+/// SetPose::centre_trust: (I + C / sigma_centre^2)^-1/2 with C the centre's covariance in the
+/// camera's axes; one for a whole sighting, whose errors the options tell.
+Eigen::Matrix3d CentreTrust(const LidarBoard& lidar,
+                            const Eigen::Matrix3d& R_camera_lidar,
+                            double sigma_centre_m);
 
 /// The cost of one set, whitened, ten residuals a pose, with R n the rotated lidar normal:
 ///     perpendicularity   e_x . R n / sigma_normal, e_y . R n / sigma_normal

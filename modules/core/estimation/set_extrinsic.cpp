@@ -1,12 +1,15 @@
 #include "core/estimation/set_extrinsic.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <ceres/tiny_solver.h>
 
+#include "core/board/what_was_measured.hpp"
 #include "core/estimation/set_cost.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/problems.hpp"
@@ -30,6 +33,21 @@ bool FixesRotation(const Eigen::Matrix3d& normal_correlation, double sigma_norma
   const Eigen::Vector3d singular_values =
       Eigen::JacobiSVD<Eigen::Matrix3d>(normal_correlation).singularValues();
   return singular_values[1] > sigma_normal_rad * sigma_normal_rad;
+}
+
+// The mean of c_camera - R c_lidar, each centre for what it is worth.
+Eigen::Vector3d TrustedTranslation(const std::vector<const BoardSample*>& set,
+                                   const Eigen::Matrix3d& R_camera_lidar) {
+  Eigen::Matrix3d sum_of_weights = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
+  for (const BoardSample* sample : set) {
+    const Eigen::Matrix3d trust =
+        CentreTrust(sample->lidar, R_camera_lidar, SetExtrinsicOptions{}.sigma_centre_m);
+    const Eigen::Matrix3d weight = trust * trust;
+    sum_of_weights += weight;
+    sum_m += weight * (sample->camera.pose.centre_m - R_camera_lidar * sample->lidar.pose.centre_m);
+  }
+  return sum_of_weights.llt().solve(sum_m);
 }
 
 bool AllInFront(const std::vector<const BoardSample*>& set,
@@ -86,6 +104,10 @@ Eigen::Isometry3d AnalyticExtrinsic(const std::vector<const BoardSample*>& set) 
         sample->camera.pose.centre_m - T_camera_lidar.linear() * sample->lidar.pose.centre_m;
   }
   T_camera_lidar.translation() = translation_sum_m / static_cast<double>(set.size());
+  if (!std::all_of(
+          set.begin(), set.end(), [](const BoardSample* s) { return IsWhole(s->lidar); })) {
+    T_camera_lidar.translation() = TrustedTranslation(set, T_camera_lidar.linear());
+  }
   return T_camera_lidar;
 }
 
@@ -105,7 +127,7 @@ SetExtrinsic EstimateSetExtrinsic(const std::vector<const BoardSample*>& set,
   result.T_camera_lidar = T_camera_lidar_start;
   if (!AllInFront(set, camera, T_camera_lidar_start)) return result;
 
-  const std::vector<SetPose> poses = SetPosesOf(set, camera);
+  const std::vector<SetPose> poses = SetPosesOf(set, camera, T_camera_lidar_start.linear(), options);
   const SetCost cost{poses, camera, T_camera_lidar_start, options};
   ceres::TinySolver<SetCost> solver;
   solver.options.max_num_iterations = options.max_iterations;

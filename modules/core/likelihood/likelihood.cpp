@@ -50,6 +50,7 @@ LensEstimate LensOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covar
 void AddResiduals(const LikelihoodSearch& search, LikelihoodExtrinsic* refined) {
   double sum_range_m2 = 0.0;
   double sum_across_m2 = 0.0;
+  int num_outlines = 0;
   for (std::size_t i = 0; i < search.poses().size(); ++i) {
     const BoardAndLidar at = search.state().At(i);
     const LikelihoodPose& pose = search.poses()[i];
@@ -59,11 +60,13 @@ void AddResiduals(const LikelihoodSearch& search, LikelihoodExtrinsic* refined) 
       sum_range_m2 += residual_m * residual_m;
       ++refined->num_returns;
     }
+    if (!pose.outline.is_whole) continue;
+    ++num_outlines;
     sum_across_m2 += OutlineResidual(at, pose.outline, search.state().LiftM(pose.outline), nullptr)
                          .head<2>()
                          .squaredNorm();
   }
-  refined->across_rms_m = std::sqrt(sum_across_m2 / static_cast<double>(search.poses().size()));
+  refined->across_rms_m = std::sqrt(sum_across_m2 / num_outlines);
   if (refined->num_returns == 0) return;
   refined->range_rms_m = std::sqrt(sum_range_m2 / refined->num_returns);
 }

@@ -61,7 +61,8 @@ LikelihoodNoise EstimateNoise(const std::vector<LikelihoodPose>& poses,
                               const LikelihoodNoise& current) {
   constexpr double kMedianToSigma = 1.4826;
   constexpr double kMedianChiSquared3 = 2.366;
-  constexpr std::size_t kMinReturns = 30;     // a plane needs some
+  constexpr std::size_t kMinReturns = 30;  // a plane needs some
+  constexpr std::size_t kMinOutlines = 3;
   constexpr double kLeastRangeSigmaM = 1e-4;  // keeps noiseless data solvable
   // Outline and planes that contradict each other could otherwise explain one another away: the
   // factor of the one grows, the fit turns to the other, and the factor grows more.
@@ -74,16 +75,20 @@ LikelihoodNoise EstimateNoise(const std::vector<LikelihoodPose>& poses,
       const double range_m = RangeToBoardM(at, seen.direction_lidar, nullptr);
       ranges.push_back(std::abs(seen.range_m - state.OffsetM(seen) - range_m));
     }
-    outlines.push_back(OutlineDisagreement(poses[i], state, options, current));
+    if (poses[i].outline.is_whole) {
+      outlines.push_back(OutlineDisagreement(poses[i], state, options, current));
+    }
     if (poses[i].returns.size() < kMinReturns) continue;
     planes.push_back(PlaneDisagreement(poses[i], state, i, options, current));
   }
   // Three residuals a pose, and six unknowns that bend towards them.
-  const double num = static_cast<double>(poses.size());
+  const double num = static_cast<double>(outlines.size());
   const double freedom = num / std::max(num - 2.0, 1.0);
   LikelihoodNoise noise = current;
   if (!ranges.empty()) noise.range_m = std::max(kMedianToSigma * Median(ranges), kLeastRangeSigmaM);
-  noise.outline_factor *= std::sqrt(freedom * Median(outlines) / kMedianChiSquared3);
+  if (outlines.size() >= kMinOutlines) {
+    noise.outline_factor *= std::sqrt(freedom * Median(outlines) / kMedianChiSquared3);
+  }
   noise.outline_factor = std::clamp(noise.outline_factor, kLeastFactor, kLargestFactor);
   if (!planes.empty()) noise.camera_factor *= std::sqrt(Median(planes) / kMedianChiSquared3);
   noise.camera_factor = std::clamp(noise.camera_factor, kLeastFactor, kLargestFactor);

@@ -1,6 +1,7 @@
 #include "core/likelihood/likelihood_terms.hpp"
 
 #include "core/board/half_turn.hpp"
+#include "core/board/what_was_measured.hpp"
 
 namespace voqcal {
 namespace {
@@ -123,6 +124,7 @@ LikelihoodPose MakeLikelihoodPose(const BoardSample& sample,
   pose.covariance = sample.camera.pose.covariance;
   pose.corners_camera_m = sample.camera.pose.corners_m;
   pose.outline = OutlineRaysOf(LidarPoseInCameraOrder(sample, T_camera_lidar));
+  pose.outline.is_whole = IsWhole(sample.lidar);
   const PointCloud& cloud = sample.lidar.points_lidar_m;
   for (const LidarPoint& point : cloud.points) {
     const Eigen::Vector3d position_m = point.position_m.cast<double>();

@@ -42,7 +42,10 @@ Eigen::Vector3d PlaneInLidar(const BoardAndLidar& at, Matrix312d* J_plane);
 /// and along its axes.
 struct OutlineRays {
   Eigen::Isometry3d T_lidar_board = Eigen::Isometry3d::Identity();  ///< As the detector says.
-  /// Of the residual [across_m (2); turn_rad]: the detector's, without model error.
+  /// All sides were measured: such outlines alone tell how far the detector is to be trusted.
+  bool is_whole = true;
+  /// Of the residual [across_m (2); turn_rad]: the detector's, without model error. Open sides make
+  /// it wide.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 

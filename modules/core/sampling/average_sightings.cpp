@@ -4,16 +4,24 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/board/half_turn.hpp"
 #include "core/geometry/rigid.hpp"
 
 namespace voqcal {
 namespace {
 
-// The same board by the half-turn whose x axis is nearer to the reference's.
-bool IsTurned(const BoardPose& pose, const BoardPose& reference) {
-  const Eigen::Vector3d x = pose.corners_m[1] - pose.corners_m[0];
+// By how many quarters a sighting's axes must be turned to be nearest to the reference's.
+int TurnTo(const BoardPose& reference, const BoardPose& pose) {
   const Eigen::Vector3d x_reference = reference.corners_m[1] - reference.corners_m[0];
-  return x.dot(x_reference) < 0;
+  return BestTurn(pose, [&x_reference](const BoardPose& turned) {
+    return -x_reference.dot(turned.corners_m[1] - turned.corners_m[0]);
+  });
+}
+
+// Of the camera's: the pattern tells quarters apart.
+bool IsTurnedByHalf(const BoardPose& reference, const BoardPose& pose) {
+  const Eigen::Vector3d x = pose.corners_m[1] - pose.corners_m[0];
+  return x.dot(reference.corners_m[1] - reference.corners_m[0]) < 0;
 }
 
 // Mean of poses that differ by noise. The covariance stays that of one frame: what it covers beside
@@ -44,13 +52,17 @@ LidarBoard MeanLidarBoard(const std::vector<LidarBoard>& boards, const BoardSpec
   const double n = static_cast<double>(boards.size());
   std::vector<BoardPose> poses;
   mean.edge_lengths_m.fill(0);
+  mean.sides.fill(SideView::kMeasured);
   mean.log_likelihood = 0;
   double sum_squares_m2 = 0;
   for (const LidarBoard& each : boards) {
-    const bool is_turned = IsTurned(each.pose, boards.front().pose);
-    poses.push_back(is_turned ? TurnedByHalf(each.pose) : each.pose);
+    const int turn = TurnTo(boards.front().pose, each.pose);
+    poses.push_back(TurnedByQuarters(each.pose, turn));
     for (std::size_t i = 0; i < 4; ++i) {
-      mean.edge_lengths_m[i] += each.edge_lengths_m[is_turned ? (i + 2) % 4 : i] / n;
+      const std::size_t turned = (i + static_cast<std::size_t>(turn)) % 4;
+      mean.edge_lengths_m[i] += each.edge_lengths_m[turned] / n;
+      // What one frame leaves open, the mean of all does.
+      if (mean.sides[i] == SideView::kMeasured) mean.sides[i] = each.sides[turned];
     }
     mean.log_likelihood += each.log_likelihood / n;
     sum_squares_m2 += each.plane_rms_m * each.plane_rms_m;
@@ -69,7 +81,7 @@ CameraBoard MeanCameraBoard(const std::vector<CameraBoard>& boards, const BoardS
   std::fill(mean.corners_px.begin(), mean.corners_px.end(), Eigen::Vector2d::Zero());
   double sum_squares_px2 = 0;
   for (const CameraBoard& each : boards) {
-    const bool is_turned = IsTurned(each.pose, boards.front().pose);
+    const bool is_turned = IsTurnedByHalf(boards.front().pose, each.pose);
     poses.push_back(is_turned ? TurnedByHalf(each.pose) : each.pose);
     const std::size_t num_corners = each.corners_px.size();
     for (std::size_t i = 0; i < num_corners; ++i) {

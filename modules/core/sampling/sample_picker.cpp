@@ -17,11 +17,12 @@ namespace {
 // A stream whose partner is silent is judged without it beyond this many frames: memory is bounded.
 constexpr std::size_t kMaxWaiting = 600;
 
-// Why the measured edges cannot be this board's; empty if they can.
+// Why the measured edges cannot be this board's; empty if they can. An edge that was not measured
+// (NaN) speaks against nothing.
 std::string EdgeProblem(const LidarBoard& lidar, const BoardSpec& board, double max_edge_error_m) {
   const auto true_lengths_m = board.EdgeLengthsM();
   for (std::size_t i = 0; i < 4; ++i) {
-    if (std::abs(lidar.edge_lengths_m[i] - true_lengths_m[i]) <= max_edge_error_m) continue;
+    if (!(std::abs(lidar.edge_lengths_m[i] - true_lengths_m[i]) > max_edge_error_m)) continue;
     return Format("the lidar measures an edge of %.3f m as %.3f m",
                   true_lengths_m[i],
                   lidar.edge_lengths_m[i]);
@@ -97,6 +98,22 @@ double LargestCornerMotionPx(const CameraBoard& a, const CameraBoard& b) {
   return num_common > 0 ? same_px : kInfinite;
 }
 
+// The pose is none of the known ones, up to the board's half-turn.
+bool IsNewAmong(const std::vector<Eigen::Isometry3d>& known_T_camera_board,
+                const BoardPose& pose_camera,
+                const SamplePickerOptions& options) {
+  const Eigen::Isometry3d T_camera_board = TransformFromPose(pose_camera);
+  const Eigen::Isometry3d T_turned = TransformFromPose(TurnedByHalf(pose_camera));
+  return std::none_of(
+      known_T_camera_board.begin(), known_T_camera_board.end(), [&](const auto& T_known) {
+        const double distance_m = (T_known.translation() - T_camera_board.translation()).norm();
+        const double angle_rad =
+            std::min(RotationAngleBetween(T_known.linear(), T_camera_board.linear()),
+                     RotationAngleBetween(T_known.linear(), T_turned.linear()));
+        return distance_m < options.min_new_distance_m && angle_rad < options.min_new_angle_rad;
+      });
+}
+
 }  // namespace
 
 std::vector<std::string> SamplePickerOptions::Problems() const {
@@ -153,6 +170,7 @@ std::vector<PickerDecision> SamplePicker::RestartIfBack(std::int64_t utime, std:
   if (static_cast<double>(newest) - static_cast<double>(utime) <= kMaxOutOfOrderUs) return {};
   std::vector<PickerDecision> decisions = Judge(true);
   window_.clear();
+  followed_.clear();
   newest_lidar_utime_ = newest_camera_utime_ = std::numeric_limits<std::int64_t>::min();
   return decisions;
 }
@@ -161,6 +179,7 @@ std::vector<PickerDecision> SamplePicker::Flush() { return Judge(true); }
 
 void SamplePicker::SetKnown(const std::vector<BoardSample>& samples) {
   known_T_camera_board_.clear();
+  unsure_T_camera_board_.clear();
   for (const BoardSample& sample : samples) {
     known_T_camera_board_.push_back(TransformFromPose(sample.camera.pose));
   }
@@ -219,7 +238,12 @@ PickerDecision SamplePicker::JudgePair(Pair pair) {
     window_.clear();
     return PickerDecision{pair.lidar.utime, {}, reason, detail};
   };
-  if (!pair.lidar.board) return reject("lidar: " + pair.lidar.miss);
+  FollowCamera(pair);
+  if (!pair.lidar.board) {
+    PickerDecision decision = reject("lidar: " + pair.lidar.miss);
+    decision.unsure = FollowedStop();
+    return decision;
+  }
   if (!pair.camera.board) return reject("camera: " + pair.camera.miss);
   const std::string edge_problem = DropWrongSizes(board_, options_.max_edge_error_m, &pair.lidar);
   if (!edge_problem.empty()) return reject("wrong board size", edge_problem);
@@ -240,7 +264,32 @@ PickerDecision SamplePicker::JudgePair(Pair pair) {
   if (static_cast<int>(window_.size()) < options_.num_still_frames) {
     return {pair.lidar.utime, {}, motion.empty() ? "not yet still for long enough" : motion};
   }
-  return JudgeWindow();
+  PickerDecision decision = JudgeWindow(window_);
+  window_.erase(window_.begin());  // the next pair may complete a new window
+  return decision;
+}
+
+PickerDecision SamplePicker::TakeStop(const UnsureStop& stop) {
+  std::vector<Pair> window;
+  for (std::size_t i = 0; i < stop.lidar.size(); ++i) {
+    window.push_back({stop.lidar[i], stop.camera[i]});
+  }
+  return JudgeWindow(window);
+}
+
+void SamplePicker::FollowCamera(const Pair& pair) {
+  const auto has_moved = [this, &pair](const Pair& earlier) {
+    return LargestCornerMotionPx(*pair.camera.board, *earlier.camera.board) >
+           options_.max_still_motion_px;
+  };
+  if (!pair.camera.board || std::any_of(followed_.begin(), followed_.end(), has_moved)) {
+    followed_.clear();
+  }
+  if (!pair.camera.board) return;
+  followed_.push_back(pair);
+  if (static_cast<int>(followed_.size()) > options_.num_still_frames) {
+    followed_.erase(followed_.begin());
+  }
 }
 
 // What the newest frame ranks first must have been there before, whatever its rank was then.
@@ -256,15 +305,15 @@ std::string SamplePicker::Motion(const Pair& pair) const {
   return {};
 }
 
-std::vector<LidarBoard> SamplePicker::RestingCandidates() const {
+std::vector<LidarBoard> SamplePicker::RestingCandidates(const std::vector<Pair>& window) const {
   std::vector<LidarBoard> resting;
-  for (const LidarBoard& candidate : CandidatesOf(window_.back().lidar)) {
+  for (const LidarBoard& candidate : CandidatesOf(window.back().lidar)) {
     std::vector<LidarBoard> track;
-    for (const Pair& pair : window_) {
+    for (const Pair& pair : window) {
       const LidarBoard* found = FoundAgain(candidate, pair.lidar, options_.max_still_motion_m);
       if (found != nullptr) track.push_back(*found);
     }
-    if (track.size() == window_.size()) resting.push_back(MeanLidarBoard(track, board_));
+    if (track.size() == window.size()) resting.push_back(MeanLidarBoard(track, board_));
   }
   std::stable_sort(resting.begin(), resting.end(), [](const LidarBoard& a, const LidarBoard& b) {
     return a.log_likelihood > b.log_likelihood;
@@ -287,29 +336,35 @@ BoardSample SamplePicker::MakeSample(std::vector<LidarBoard> candidates,
   return sample;
 }
 
-PickerDecision SamplePicker::JudgeWindow() {
+PickerDecision SamplePicker::JudgeWindow(const std::vector<Pair>& window) {
   std::vector<CameraBoard> camera;
-  for (const Pair& pair : window_) camera.push_back(*pair.camera.board);
-  const std::int64_t utime = window_.front().lidar.utime;
-  BoardSample sample = MakeSample(RestingCandidates(), camera, utime);
-  sample.camera_utime = window_.front().camera.utime;
-  window_.erase(window_.begin());  // the next pair may complete a new window
-  if (!IsNew(sample)) return {utime, {}, "pose is not new"};
+  for (const Pair& pair : window) camera.push_back(*pair.camera.board);
+  const std::int64_t utime = window.front().lidar.utime;
+  std::vector<LidarBoard> candidates = RestingCandidates(window);
+  if (candidates.empty()) return {utime, {}, "board is moving"};
+  BoardSample sample = MakeSample(std::move(candidates), camera, utime);
+  sample.camera_utime = window.front().camera.utime;
+  if (!IsNew(sample.camera.pose)) return {utime, {}, "pose is not new"};
   known_T_camera_board_.push_back(TransformFromPose(sample.camera.pose));
   return {utime, std::move(sample), {}};
 }
 
-bool SamplePicker::IsNew(const BoardSample& sample) const {
-  const Eigen::Isometry3d T_camera_board = TransformFromPose(sample.camera.pose);
-  const Eigen::Isometry3d T_turned = TransformFromPose(TurnedByHalf(sample.camera.pose));
-  return std::none_of(
-      known_T_camera_board_.begin(), known_T_camera_board_.end(), [&](const auto& T_known) {
-        const double distance_m = (T_known.translation() - T_camera_board.translation()).norm();
-        const double angle_rad =
-            std::min(RotationAngleBetween(T_known.linear(), T_camera_board.linear()),
-                     RotationAngleBetween(T_known.linear(), T_turned.linear()));
-        return distance_m < options_.min_new_distance_m && angle_rad < options_.min_new_angle_rad;
-      });
+// What has been followed for long enough, at a place that no sample and no earlier stop has.
+std::optional<UnsureStop> SamplePicker::FollowedStop() {
+  if (static_cast<int>(followed_.size()) < options_.num_still_frames) return {};
+  const BoardPose& pose = followed_.front().camera.board->pose;
+  if (!IsNew(pose) || !IsNewAmong(unsure_T_camera_board_, pose, options_)) return {};
+  unsure_T_camera_board_.push_back(TransformFromPose(pose));
+  UnsureStop stop;
+  for (const Pair& pair : followed_) {
+    stop.lidar.push_back(pair.lidar);
+    stop.camera.push_back(pair.camera);
+  }
+  return stop;
+}
+
+bool SamplePicker::IsNew(const BoardPose& pose_camera) const {
+  return IsNewAmong(known_T_camera_board_, pose_camera, options_);
 }
 
 }  // namespace voqcal

@@ -35,9 +35,18 @@ struct Sighting {
   std::optional<Board> board;
   std::string miss;
   std::vector<Board> runners_up{};  ///< Others that might be the board, best first (lidar only).
+  /// Where there is no board: what may be it, but may be something else (lidar only).
+  std::vector<Board> unsure{};
 };
 using LidarSighting = Sighting<LidarBoard>;
 using CameraSighting = Sighting<CameraBoard>;
+
+/// A stop of the board that the camera saw, and the lidar by itself did not: once the extrinsic is
+/// known roughly, a second look tells.
+struct UnsureStop {
+  std::vector<LidarSighting> lidar;    ///< Of num_still_frames frames, in order of time...
+  std::vector<CameraSighting> camera;  ///< ...and of the images paired with them.
+};
 
 /// One decision: a sample, or why a pair of frames gave none.
 struct PickerDecision {
@@ -45,6 +54,7 @@ struct PickerDecision {
   std::optional<BoardSample> accepted;  ///< Its id is 0: numbering is the caller's.
   std::string reason;                   ///< Empty if accepted; one of a few, to be counted.
   std::string detail{};                 ///< What there is to add to the reason; often empty.
+  std::optional<UnsureStop> unsure{};   ///< With the reason that the lidar saw no board.
 };
 
 /// Pairs the two detectors' streams by sensor time and picks the samples.
@@ -72,6 +82,9 @@ class SamplePicker {
   /// Takes that back, if the pair has not come.
   void CancelCapture() { is_capture_requested_ = false; }
 
+  /// A sample of a stop in which the lidar's board was found since, each frame's sighting with it.
+  PickerDecision TakeStop(const UnsureStop& stop);
+
   /// The samples that the session has: new poses must differ from them.
   void SetKnown(const std::vector<BoardSample>& samples);
 
@@ -89,15 +102,19 @@ class SamplePicker {
   /// Takes the oldest camera frame away: no lidar frame can claim it.
   PickerDecision DropCameraFrame();
   PickerDecision JudgePair(Pair pair);
-  PickerDecision JudgeWindow();
-  /// What the lidar saw resting through all frames of the window: the likeliest, then the others.
-  std::vector<LidarBoard> RestingCandidates() const;
+  PickerDecision JudgeWindow(const std::vector<Pair>& window);
+  /// What the lidar saw resting through all frames of a window: the likeliest, then the others.
+  std::vector<LidarBoard> RestingCandidates(const std::vector<Pair>& window) const;
+  /// Keeps `followed_` up.
+  void FollowCamera(const Pair& pair);
+  /// What is followed, if it is whole and its pose is new.
+  std::optional<UnsureStop> FollowedStop();
   BoardSample MakeSample(std::vector<LidarBoard> candidates,
                          const std::vector<CameraBoard>& camera,
                          std::int64_t utime) const;
   /// Why the window's boards are not at rest; empty if they are.
   std::string Motion(const Pair& pair) const;
-  bool IsNew(const BoardSample& sample) const;
+  bool IsNew(const BoardPose& pose_camera) const;
 
   BoardSpec board_;
   SamplePickerOptions options_;
@@ -107,8 +124,10 @@ class SamplePicker {
   std::deque<CameraSighting> camera_;  // not yet judged, in order of time
   std::int64_t newest_lidar_utime_;
   std::int64_t newest_camera_utime_;
-  std::vector<Pair> window_;  // the latest consecutive pairs with a resting board
+  std::vector<Pair> window_;    // the latest consecutive pairs with a resting board
+  std::vector<Pair> followed_;  // those in which the camera's board rests, whatever the lidar saw
   std::vector<Eigen::Isometry3d> known_T_camera_board_;
+  std::vector<Eigen::Isometry3d> unsure_T_camera_board_;  // of the unsure stops so far
 };
 
 }  // namespace voqcal

@@ -1,13 +1,16 @@
 #include "core/selection/consistency.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "core/board/what_was_measured.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/problems.hpp"
 #include "core/units.hpp"
@@ -19,7 +22,9 @@ namespace {
 struct PairError {
   double distance_m = 0.0;
   double angle_rad = 0.0;
-  double relative = 0.0;  // the worse of the two over its limit
+  double max_distance_m = 0.0;  // the limits
+  double max_angle_rad = 0.0;
+  double relative = 0.0;  // the worst over its limit
 
   bool Agrees() const { return relative <= 1.0; }  // false for NaN
 };
@@ -38,6 +43,79 @@ std::vector<Candidate> CandidatesOf(const std::vector<BoardSample>& samples) {
     }
   }
   return candidates;
+}
+
+// How far a board's centre may be off along a direction, and its normal across (3 sigma of its
+// covariance): a centre that not all sides fix, a pose from few pixels.
+struct Slack {
+  Eigen::Matrix3d of_centre;
+  double angle_rad = 0.0;
+
+  explicit Slack(const BoardPose& pose) {
+    constexpr double kSquaredSigmas = 9.0;
+    of_centre = kSquaredSigmas * pose.covariance.bottomRightCorner<3, 3>();
+    const Eigen::Matrix3d of_rotation = kSquaredSigmas * pose.covariance.topLeftCorner<3, 3>();
+    const Eigen::Vector3d& n = pose.normal;
+    // Half of what tilts the normal: the turn about it does not.
+    angle_rad = std::sqrt(0.5 * std::max(0.0, of_rotation.trace() - n.dot(of_rotation * n)));
+  }
+
+  double Along(const Eigen::Vector3d& direction) const {
+    return std::sqrt(std::max(0.0, direction.dot(of_centre * direction)));
+  }
+};
+
+// Of both boards of a pair, in one sensor.
+struct PairSlack {
+  Slack a;
+  Slack b;
+
+  double Along(const Eigen::Vector3d& direction) const {
+    return std::hypot(a.Along(direction), b.Along(direction));
+  }
+  double AngleRad() const { return std::hypot(a.angle_rad, b.angle_rad); }
+};
+
+// Three things that are the same in both sensors whatever the extrinsic is: the distance of the
+// centres, the angle of the normals, and how far each centre lies off the other's plane. The last
+// follows from the others but where a centre is uncertain within its plane; it is judged there
+// alone.
+PairError ComparePair(const std::array<std::reference_wrapper<const LidarBoard>, 2>& lidar,
+                      const std::array<std::reference_wrapper<const BoardPose>, 2>& camera,
+                      const ConsistencyOptions& options) {
+  const BoardPose& la = lidar[0].get().pose;
+  const BoardPose& lb = lidar[1].get().pose;
+  const BoardPose& ca = camera[0];
+  const BoardPose& cb = camera[1];
+  const PairSlack slack_lidar{Slack(la), Slack(lb)};
+  const PairSlack slack_camera{Slack(ca), Slack(cb)};
+  const Eigen::Vector3d lidar_m = lb.centre_m - la.centre_m;
+  const Eigen::Vector3d camera_m = cb.centre_m - ca.centre_m;
+  const auto limit_m = [&](const Eigen::Vector3d& in_lidar, const Eigen::Vector3d& in_camera) {
+    return std::hypot(options.max_distance_m,
+                      std::hypot(slack_lidar.Along(in_lidar), slack_camera.Along(in_camera)));
+  };
+  PairError error;
+  error.distance_m = std::abs(lidar_m.norm() - camera_m.norm());
+  error.angle_rad =
+      std::abs(AngleBetween(la.normal, lb.normal) - AngleBetween(ca.normal, cb.normal));
+  error.max_distance_m = limit_m(lidar_m.normalized(), camera_m.normalized());
+  error.max_angle_rad = std::hypot(options.max_angle_rad,
+                                   std::hypot(slack_lidar.AngleRad(), slack_camera.AngleRad()));
+  const double by_distance = error.distance_m / error.max_distance_m;
+  const double by_angle = error.angle_rad / error.max_angle_rad;
+  // Not std::max, which would hide a NaN.
+  error.relative = by_distance > by_angle ? by_distance : by_angle;
+  if (std::isnan(by_distance)) error.relative = by_distance;
+  if (IsWhole(lidar[0]) && IsWhole(lidar[1])) return error;
+  const double turned_m = error.max_angle_rad * camera_m.norm();
+  for (const auto& [normal_lidar, normal_camera] :
+       {std::pair(la.normal, ca.normal), {lb.normal, cb.normal}}) {
+    const double off_plane_m = std::abs(normal_lidar.dot(lidar_m) - normal_camera.dot(camera_m));
+    const double most_m = std::hypot(turned_m, limit_m(normal_lidar, normal_camera));
+    error.relative = std::max(error.relative, off_plane_m / most_m);
+  }
+  return error;
 }
 
 // The pairwise comparison of all candidates.
@@ -63,30 +141,18 @@ class PairTable {
   bool Agree(std::size_t i, std::size_t j) const { return agrees_[i * size() + j] != 0; }
   const Candidate& candidate(std::size_t i) const { return candidates_[i]; }
 
-  PairError PairErrorOf(std::size_t i, std::size_t j) const {
-    const BoardPose& la = LidarPose(i);
-    const BoardPose& lb = LidarPose(j);
-    const BoardPose& ca = samples_[candidates_[i].sample].camera.pose;
-    const BoardPose& cb = samples_[candidates_[j].sample].camera.pose;
-    PairError error;
-    error.distance_m =
-        std::abs((la.centre_m - lb.centre_m).norm() - (ca.centre_m - cb.centre_m).norm());
-    error.angle_rad =
-        std::abs(AngleBetween(la.normal, lb.normal) - AngleBetween(ca.normal, cb.normal));
-    const double by_distance = error.distance_m / options_.max_distance_m;
-    const double by_angle = error.angle_rad / options_.max_angle_rad;
-    // Not std::max, which would hide a NaN.
-    error.relative = by_distance > by_angle ? by_distance : by_angle;
-    if (std::isnan(by_distance)) error.relative = by_distance;
-    return error;
+  PairError Compare(std::size_t i, std::size_t j) const {
+    return ComparePair({Lidar(i), Lidar(j)}, {Camera(i), Camera(j)}, options_);
   }
 
  private:
-  const BoardPose& LidarPose(std::size_t i) const {
+  const LidarBoard& Lidar(std::size_t i) const {
     const BoardSample& sample = samples_[candidates_[i].sample];
     const int rank = candidates_[i].rank;
-    return rank == 0 ? sample.lidar.pose
-                     : sample.runners_up[static_cast<std::size_t>(rank - 1)].pose;
+    return rank == 0 ? sample.lidar : sample.runners_up[static_cast<std::size_t>(rank - 1)];
+  }
+  const BoardPose& Camera(std::size_t i) const {
+    return samples_[candidates_[i].sample].camera.pose;
   }
 
   const std::vector<BoardSample>& samples_;
@@ -142,8 +208,7 @@ Members Grow(Members members, const PairTable& pairs) {
 std::string ReasonFor(std::size_t candidate,
                       const Members& consistent,
                       const PairTable& pairs,
-                      const std::vector<BoardSample>& samples,
-                      const ConsistencyOptions& options) {
+                      const std::vector<BoardSample>& samples) {
   std::size_t num_disagreeing = 0;
   std::size_t num_others = 0;
   std::size_t worst_sample = 0;
@@ -163,8 +228,9 @@ std::string ReasonFor(std::size_t candidate,
   text << "disagrees with " << num_disagreeing << " of " << num_others
        << " consistent samples; worst with sample " << samples[worst_sample].id
        << ": centre distances differ by " << 1000.0 * worst.distance_m << " mm (limit "
-       << 1000.0 * options.max_distance_m << "), normal angles by " << kDegPerRad * worst.angle_rad
-       << " deg (limit " << kDegPerRad * options.max_angle_rad << ")";
+       << 1000.0 * worst.max_distance_m << "), normal angles by "
+       << kDegPerRad * worst.angle_rad << " deg (limit "
+       << kDegPerRad * worst.max_angle_rad << ")";
   return text.str();
 }
 
@@ -198,7 +264,7 @@ Consistency FindConsistent(const std::vector<BoardSample>& samples,
     if (candidates[i].rank != 0) continue;  // once a sample, at its likeliest candidate
     const std::size_t member = member_of[candidates[i].sample];
     const int sample = static_cast<int>(candidates[i].sample);
-    const auto reason = [&] { return ReasonFor(i, members, pairs, samples, options); };
+    const auto reason = [&] { return ReasonFor(i, members, pairs, samples); };
     if (member == kNone) {
       result.inconsistent.push_back({sample, reason()});
       continue;

@@ -33,6 +33,10 @@ struct ChosenCandidate {
 /// So does a lidar whose ranges are all off by b: two centres at an angle a apart come out 2 b
 /// sin(a / 2) too far from each other. max_distance_m must leave room for that (b = 60 mm and a =
 /// 60 degrees take all of the default).
+///
+/// Both limits grow by 3 sigma of the poses' covariances: of a board whose sides were not all
+/// measured, or of which the camera has few pixels. Of such a lidar's board the distances of the
+/// centres from each other's plane are compared too.
 struct Consistency {
   std::vector<int> consistent;  ///< Ascending indices of a largest subset that agrees pairwise.
   std::vector<InconsistentSample> inconsistent;

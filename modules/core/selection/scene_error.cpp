@@ -12,40 +12,13 @@
 namespace voqcal {
 namespace {
 
-// Of the lidar's board, turned into the camera's axes.
-Matrix6d LidarCovariance(const BoardSample& sample,
-                         const CameraModel& camera,
-                         const Eigen::Isometry3d& T_camera_lidar,
-                         const NominalNoise& nominal) {
-  const Eigen::Matrix3d& R = T_camera_lidar.linear();
-  if (!sample.lidar.pose.covariance.isZero(0.0)) {
-    Matrix6d A = Matrix6d::Zero();
-    A.topLeftCorner<3, 3>() = R;
-    A.bottomRightCorner<3, 3>() = R;
-    return A * sample.lidar.pose.covariance * A.transpose();
-  }
-  const Eigen::Vector3d ray = R * sample.lidar.pose.centre_m.normalized();
-  const double across_m = nominal.across_px * MetresPerPixel(sample.camera.pose, camera);
-  const double along_m = nominal.along_ray_m;
-  Matrix6d covariance = Matrix6d::Zero();
-  covariance.topLeftCorner<3, 3>().diagonal().setConstant(nominal.rotation_rad *
-                                                          nominal.rotation_rad);
-  covariance.bottomRightCorner<3, 3>() =
-      across_m * across_m * Eigen::Matrix3d::Identity() +
-      (along_m * along_m - across_m * across_m) * ray * ray.transpose();
-  return covariance;
-}
-
-// L of one pose. Where nothing is known of the camera's noise, the lidar's is taken for all.
+// L of one pose.
 Matrix6d InformationOf(const BoardSample& sample,
                        const CameraModel& camera,
                        const Eigen::Isometry3d& T_camera_lidar,
                        const NominalNoise& nominal) {
-  const Matrix6d covariance =
-      sample.camera.pose.covariance + LidarCovariance(sample, camera, T_camera_lidar, nominal);
-  Matrix6d J = -Matrix6d::Identity();
-  J.bottomLeftCorner<3, 3>() = Skew(T_camera_lidar.linear() * sample.lidar.pose.centre_m);
-  return J.transpose() * covariance.llt().solve(J);
+  const PoseDifference difference = DifferenceOf(sample, camera, T_camera_lidar, nominal);
+  return difference.J.transpose() * difference.C.llt().solve(difference.J);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -26,17 +27,6 @@ constexpr Named kNames[] = {{SelectionCriterion::kVoq, "voq"},
                             {SelectionCriterion::kSceneError, "scene_error"},
                             {SelectionCriterion::kRandom, "random"},
                             {SelectionCriterion::kAllPoses, "all_poses"}};
-
-// The samples that may be part of a set, ascending: their VOQ is known.
-std::vector<int> MeasuredSamples(const std::vector<BoardSample>& samples, const BoardSpec& board) {
-  std::vector<int> measured;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (std::isfinite(BoardDimensionErrorMm(samples[i].lidar.edge_lengths_m, board))) {
-      measured.push_back(static_cast<int>(i));
-    }
-  }
-  return measured;
-}
 
 double KappaOf(const std::vector<BoardSample>& samples, const Triple& set) {
   const BoardSample& a = samples[static_cast<std::size_t>(set[0])];
@@ -165,7 +155,8 @@ std::vector<VoqSet> SelectSets(const std::vector<BoardSample>& samples,
   if (options.criterion == SelectionCriterion::kVoq) {
     return SelectByVoq(samples, board, options.num_sets);
   }
-  const std::vector<int> poses = MeasuredSamples(samples, board);
+  std::vector<int> poses(samples.size());
+  std::iota(poses.begin(), poses.end(), 0);
   std::vector<VoqSet> sets;
   const auto add = [&](const std::vector<int>& members) {
     VoqSet set = ScoreVoq(samples, members, board);

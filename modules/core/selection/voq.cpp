@@ -28,13 +28,28 @@ struct RankedPose {
   Eigen::Vector3d normal_lidar, normal_camera;
 };
 
-// The samples with a measured size, best first. The lower bound of the search relies on this order.
+// e_dim by what was measured, and so much for each edge that was not.
+double RankingErrorMm(const std::array<double, 4>& edge_lengths_m, const BoardSpec& board) {
+  constexpr double kOpenEdgeMm = 50.0;
+  const std::array<double, 4> true_lengths_m = board.EdgeLengthsM();
+  double sum_m = 0.0;
+  int num_open = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (std::isnan(edge_lengths_m[i])) {
+      ++num_open;
+    } else {
+      sum_m += std::abs(edge_lengths_m[i] - true_lengths_m[i]);
+    }
+  }
+  return kMmPerM * sum_m + kOpenEdgeMm * num_open;
+}
+
+// The samples, best first. The lower bound of the search relies on this order.
 std::vector<RankedPose> RankByDimensionError(const std::vector<BoardSample>& samples,
                                              const BoardSpec& board) {
   std::vector<RankedPose> ranked;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double error_mm = BoardDimensionErrorMm(samples[i].lidar.edge_lengths_m, board);
-    if (!std::isfinite(error_mm)) continue;
+    const double error_mm = RankingErrorMm(samples[i].lidar.edge_lengths_m, board);
     ranked.push_back({static_cast<int>(i),
                       error_mm,
                       samples[i].lidar.pose.normal,
@@ -91,8 +106,14 @@ std::vector<ScoredTriple> LowestVoq(const std::vector<RankedPose>& ranked, int n
 double BoardDimensionErrorMm(const std::array<double, 4>& edge_lengths_m, const BoardSpec& board) {
   const std::array<double, 4> true_lengths_m = board.EdgeLengthsM();
   double sum_m = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) sum_m += std::abs(edge_lengths_m[i] - true_lengths_m[i]);
-  return kMmPerM * sum_m;
+  int num_measured = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (std::isnan(edge_lengths_m[i])) continue;
+    sum_m += std::abs(edge_lengths_m[i] - true_lengths_m[i]);
+    ++num_measured;
+  }
+  if (num_measured == 4) return kMmPerM * sum_m;
+  return kMmPerM * sum_m * 4 / num_measured;  // NaN if none was
 }
 
 double MedianBoardDimensionErrorMm(const std::vector<BoardSample>& samples,
@@ -141,7 +162,7 @@ VoqSet ScoreVoq(const std::vector<BoardSample>& samples,
     const BoardSample& sample = samples.at(static_cast<std::size_t>(pose));
     normals_lidar.push_back(sample.lidar.pose.normal);
     normals_camera.push_back(sample.camera.pose.normal);
-    sum_mm += BoardDimensionErrorMm(sample.lidar.edge_lengths_m, board);
+    sum_mm += RankingErrorMm(sample.lidar.edge_lengths_m, board);
   }
   set.kappa_lidar = NormalConditionNumber(normals_lidar);
   set.kappa_camera = NormalConditionNumber(normals_camera);

@@ -71,7 +71,7 @@ TEST(VerdictOf, DoesNotCallTheUnknownGood) {
   EXPECT_EQ(verdict.grade, Grade::kBad);  // no poses
   int num_unknown = 0;
   for (const VerdictCheck& check : verdict.checks) {
-    if (check.text != "Unknown: too few poses to tell. Take more samples.") continue;
+    if (check.text != "Unknown: no pose could be held out to tell. Take more samples.") continue;
     EXPECT_EQ(check.grade, Grade::kLook) << check.name;
     ++num_unknown;
   }

@@ -169,5 +169,43 @@ TEST(ConsistencyOptions, NamesEachProblem) {
   EXPECT_THROW(FindConsistent({}, {0.0, 0.1}), std::invalid_argument);
 }
 
+// The board was seen as a plane alone: its centre is off within the plane, and says so.
+void SeePlaneAlone(double off_m, double sigma_m, LidarBoard* lidar) {
+  const Eigen::Vector3d along = (lidar->pose.corners_m[1] - lidar->pose.corners_m[0]).normalized();
+  lidar->sides.fill(SideView::kJoined);
+  lidar->pose.centre_m += off_m * along;
+  lidar->pose.covariance.setIdentity();
+  lidar->pose.covariance *= 1e-4;
+  const Eigen::Vector3d& n = lidar->pose.normal;
+  lidar->pose.covariance.bottomRightCorner<3, 3>() +=
+      sigma_m * sigma_m * (Eigen::Matrix3d::Identity() - n * n.transpose());
+}
+
+TEST(FindConsistent, GivesAnOpenSideItsUncertainty) {
+  auto samples = Scene(10, 0);
+  SeePlaneAlone(0.3, 0.2, &samples[4].lidar);
+  EXPECT_THAT(FindConsistent(samples, {}).inconsistent, IsEmpty());
+  samples[4].lidar.sides.fill(SideView::kMeasured);
+  samples[4].lidar.pose.covariance.setZero();
+  EXPECT_EQ(FindConsistent(samples, {}).inconsistent.size(), 1u);
+}
+
+TEST(FindConsistent, HoldsAPlaneAloneToItsPlane) {
+  auto samples = Scene(10, 0);
+  SeePlaneAlone(0.0, 0.2, &samples[4].lidar);
+  samples[4].lidar.pose.centre_m += 1.2 * samples[4].lidar.pose.normal;
+  const Consistency found = FindConsistent(samples, {});
+  ASSERT_EQ(found.inconsistent.size(), 1u);
+  EXPECT_EQ(found.inconsistent[0].sample, 4);
+}
+
+TEST(FindConsistent, GivesFewPixelsTheirUncertainty) {
+  auto samples = Scene(10, 0);
+  samples[4].camera.pose.centre_m *= 1.05;  // 5 % too far
+  EXPECT_EQ(FindConsistent(samples, {}).inconsistent.size(), 1u);
+  samples[4].camera.pose.covariance = 0.05 * 0.05 * Matrix6d::Identity();
+  EXPECT_THAT(FindConsistent(samples, {}).inconsistent, IsEmpty());
+}
+
 }  // namespace
 }  // namespace voqcal

@@ -88,7 +88,7 @@ TEST(MedianBoardDimensionErrorMm, LeavesOutWhatWasNotMeasured) {
     samples[i].lidar.edge_lengths_m = board.EdgeLengthsM();
     samples[i].lidar.edge_lengths_m[i] += 0.001 * static_cast<double>(i + 1);
   }
-  samples[4].lidar.edge_lengths_m[2] = NAN;
+  samples[4].lidar.edge_lengths_m.fill(NAN);
   EXPECT_NEAR(MedianBoardDimensionErrorMm(samples, board), 2.5, 1e-9);
   samples.erase(samples.begin());
   EXPECT_NEAR(MedianBoardDimensionErrorMm(samples, board), 3.0, 1e-9);
@@ -97,6 +97,11 @@ TEST(MedianBoardDimensionErrorMm, LeavesOutWhatWasNotMeasured) {
 
 TEST(BoardDimensionErrorMm, SumsTheFourEdges) {
   EXPECT_NEAR(BoardDimensionErrorMm({0.62, 0.84, 0.605, 0.85}, test::TestBoard()), 25.0, 1e-9);
+}
+
+TEST(BoardDimensionErrorMm, TakesOpenEdgesToErrAsTheOthersDo) {
+  EXPECT_NEAR(BoardDimensionErrorMm({NAN, 0.84, NAN, 0.85}, test::TestBoard()), 20.0, 1e-9);
+  EXPECT_TRUE(std::isnan(BoardDimensionErrorMm({NAN, NAN, NAN, NAN}, test::TestBoard())));
 }
 
 TEST(NormalConditionNumber, IsThreeForOrthogonalNormals) {
@@ -173,12 +178,13 @@ TEST(SelectByVoq, LeavesOutParallelNormals) {
   for (const VoqSet& set : sets) EXPECT_FALSE(set.samples[0] == 0 && set.samples[1] == 1);
 }
 
-TEST(SelectByVoq, LeavesOutSamplesThatWereNotMeasured) {
+TEST(SelectByVoq, PrefersWholeSightings) {
   auto samples = NoisySamples(4, 0.0, 1);
   samples[2].lidar.edge_lengths_m[1] = std::numeric_limits<double>::quiet_NaN();
   const auto sets = SelectByVoq(samples, test::TestBoard(), 50);
-  ASSERT_EQ(sets.size(), 1u);
+  ASSERT_EQ(sets.size(), 4u);
   EXPECT_THAT(sets[0].samples, ElementsAre(0, 1, 3));
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_NEAR(sets[i].board_error_mm, 50.0 / 3, 1e-6);
 }
 
 TEST(SelectByVoq, RefusesNoSets) {

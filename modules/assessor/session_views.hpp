@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/assessment/scene_view.hpp"
+#include "core/scene/scene_view.hpp"
 #include "core/board/board_sample.hpp"
 #include "messaging/session_scenes.hpp"
 #include "rig/rig.hpp"

@@ -289,10 +289,10 @@ void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
   section.ReadDegrees("tolerance_deg", &options->tolerance_rad);
   section.Read("num_sigmas", &options->num_sigmas);
   section.Read("min_gain_sigmas", &options->min_gain_sigmas);
-  section.Read("min_jump_m", &options->view.min_jump_m);
-  section.ReadDegrees("max_step_deg", &options->view.max_step_rad);
+  section.Read("min_jump_m", &options->view.edges.min_jump_m);
+  section.ReadDegrees("max_step_deg", &options->view.edges.max_step_rad);
   section.Read("board_margin_m", &options->view.board_margin_m);
-  section.Read("min_range_m", &options->view.min_range_m);
+  section.Read("min_range_m", &options->view.edges.min_range_m);
   section.Read("max_image_width_px", &options->view.max_image_width_px);
   section.Read("image_blur_px", &options->view.image_blur_px);
   Finish(*options, &section);

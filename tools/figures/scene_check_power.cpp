@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "assessor/session_views.hpp"
-#include "core/assessment/scene_check.hpp"
+#include "core/scene/scene_check.hpp"
 #include "figures/figures.hpp"
 #include "result/result_file.hpp"
 #include "rig/rig.hpp"

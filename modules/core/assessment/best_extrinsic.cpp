@@ -112,6 +112,7 @@ std::vector<std::string> RefinerOptions::Problems() const {
   ProblemList problems;
   problems.Add(reprojection.Problems());
   problems.Add(likelihood.Problems());
+  problems.Add(scene.Problems());
   return problems.lines();
 }
 

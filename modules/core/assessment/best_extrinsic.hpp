@@ -13,6 +13,7 @@
 #include "core/estimation/average.hpp"
 #include "core/estimation/refine.hpp"
 #include "core/likelihood/likelihood.hpp"
+#include "core/scene/scene_refinement.hpp"
 
 namespace voqcal {
 
@@ -32,6 +33,7 @@ struct RefinerOptions {
   std::optional<RefineMethod> method;
   RefineOptions reprojection;
   LikelihoodOptions likelihood;
+  SceneRefinementOptions scene;
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;

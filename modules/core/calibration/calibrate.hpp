@@ -6,8 +6,8 @@
 
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/diagnosis.hpp"
-#include "core/assessment/scene_check.hpp"
-#include "core/assessment/scene_view.hpp"
+#include "core/scene/scene_check.hpp"
+#include "core/scene/scene_view.hpp"
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/calibration/calibration.hpp"

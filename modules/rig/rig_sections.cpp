@@ -271,11 +271,12 @@ void ReadExtrinsicRefiner(YamlSection* top, RefinerOptions* options) {
   section.Read("method", &method);
   options->method = RefineMethodFromString(method);
   if (!options->method && method != "automatic") {
-    section.AddError("method", "must be automatic, likelihood, reprojection or average");
+    section.AddError("method", "must be automatic, joint, likelihood, reprojection or average");
   }
   section.Read("centre_weight", &options->reprojection.centre_weight);
   section.Read("corner_weight", &options->reprojection.corner_weight);
   section.Read("huber_px", &options->reprojection.huber_px);
+  section.Read("range_offset_m", &options->reprojection.range_offset_m);
   section.Read("max_iterations", &options->reprojection.max_iterations);
   ReadLikelihood(&section, &options->likelihood);
   Finish(options->reprojection, &section);

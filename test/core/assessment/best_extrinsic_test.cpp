@@ -30,7 +30,7 @@ BestExtrinsic Best(const std::vector<const BoardSample*>& samples,
                    const std::optional<RefineMethod>& method = {}) {
   RefinerOptions options;
   options.method = method;
-  return RefineBest(samples, test::TestCamera(), RoughAverage(), options);
+  return RefineBest(samples, test::TestCamera(), RoughAverage(), {}, options);
 }
 
 test::SyntheticSamplesOptions NoisyScene(int num_samples) {
@@ -70,7 +70,7 @@ TEST(RefineBest, KeepsTheAverageThatNoMethodBetters) {
   truth.T_camera_lidar = test::TestExtrinsic();
   // Six noisy poses hold a worse extrinsic than the truth.
   const BestExtrinsic best =
-      RefineBest(test::Pointers(samples), test::TestCamera(), truth, RefinerOptions{});
+      RefineBest(test::Pointers(samples), test::TestCamera(), truth, {}, RefinerOptions{});
   EXPECT_EQ(best.method, RefineMethod::kAverage);
   EXPECT_EQ(best.T_camera_lidar.matrix(), test::TestExtrinsic().matrix());
   EXPECT_EQ(best.covariance(3, 3), 0.004 * 0.004);
@@ -145,7 +145,7 @@ TEST(RefinerOptions, NamesProblemsOfItsParts) {
   options.reprojection.huber_px = 0.0;
   options.likelihood.ring_prior_m = 0.0;
   EXPECT_THAT(options.Problems(), SizeIs(2));
-  EXPECT_THROW(RefineBest({}, test::TestCamera(), RoughAverage(), options), std::invalid_argument);
+  EXPECT_THROW(RefineBest({}, test::TestCamera(), RoughAverage(), {}, options), std::invalid_argument);
 }
 
 TEST(RefineMethodFromString, TakesWhatToStringGives) {

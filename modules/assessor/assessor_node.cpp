@@ -65,10 +65,7 @@ AssessorNode::AssessorNode(const Rig& rig,
                            Bus* bus,
                            const std::filesystem::path& session_folder,
                            SceneViewsOf scene_views)
-    : rig_(rig),
-      bus_(*bus),
-      session_folder_(session_folder),
-      scene_views_(std::move(scene_views)) {
+    : rig_(rig), bus_(*bus), session_folder_(session_folder), scene_views_(std::move(scene_views)) {
   if (!scene_views_) {
     scene_views_ = ViewsOfSession(
         rig.board, rig.camera, rig.scene_check.view, session_folder / kSamplesLogName);

@@ -40,11 +40,12 @@ extrinsic_refined_t ExtrinsicRefinerNode::Refine() const {
     const std::vector<BoardSample> all = SamplesAsChosen(*samples_, averaged_->chosen);
     const std::vector<const BoardSample*> samples =
         SamplesWithout(all, averaged_->inconsistent_ids);
-    const BestExtrinsic best = RefineBest(samples,
-                                          rig_.camera,
-                                          FromMessage(*averaged_),
-                                          scene_views_ ? scene_views_(samples) : std::vector<SceneView>(),
-                                          rig_.extrinsic_refiner);
+    const BestExtrinsic best =
+        RefineBest(samples,
+                   rig_.camera,
+                   FromMessage(*averaged_),
+                   scene_views_ ? scene_views_(samples) : std::vector<SceneView>(),
+                   rig_.extrinsic_refiner);
     result = ToMessage(best, IdsOf(samples));
   }
   StampMadeFrom(*samples_, &result);

@@ -45,12 +45,8 @@ void SessionViews::ReadNew(const std::map<Key, const BoardSample*>& samples) {
 
 void SessionViews::Add(const SessionScene& scene, const Key& key, const BoardSample& sample) {
   try {
-    views_[key] = MakeSceneView(FromMessage(scene.sweep),
-                                FromMessage(scene.image),
-                                sample,
-                                board_,
-                                camera_,
-                                options_);
+    views_[key] = MakeSceneView(
+        FromMessage(scene.sweep), FromMessage(scene.image), sample, board_, camera_, options_);
   } catch (const std::exception& error) {
     spdlog::warn("{}: the scene of sample {} is left out: {}",
                  samples_log_.string(),

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/scene/scene_view.hpp"
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/calibration/calibrate.hpp"
 #include "core/camera/camera_model.hpp"
+#include "core/scene/scene_view.hpp"
 #include "messaging/session_scenes.hpp"
 
 namespace voqcal {

@@ -11,6 +11,8 @@ void AddConsistency(CLI::App* app);
 void AddCoverage(CLI::App* app);
 void AddGuidance(CLI::App* app);
 void AddGuidanceBound(CLI::App* app);
+void AddMethods(CLI::App* app);
+void AddRepeatability(CLI::App* app);
 void AddSubsets(CLI::App* app);
 
 void AddCameraDetection(CLI::App* app);

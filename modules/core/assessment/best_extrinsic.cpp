@@ -158,8 +158,7 @@ std::vector<std::string> RefinerOptions::Problems() const {
 }
 
 LidarBias BestExtrinsic::Bias() const {
-  const bool has_bias =
-      method == RefineMethod::kLikelihood || (method == RefineMethod::kJoint && likelihood.IsUsable());
+  const bool has_bias = method == RefineMethod::kLikelihood || method == RefineMethod::kJoint;
   return has_bias ? likelihood.bias : LidarBias{};
 }
 
@@ -218,13 +217,13 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
                              views,
                              camera,
                              options.scene);
-  best.trials = {{RefineMethod::kAverage, "", ScoreScene(samples, camera, T_start)},
-                 {RefineMethod::kReprojection, ProblemOf(reprojection.status), {}},
-                 {RefineMethod::kLikelihood,
-                  has_points ? ProblemOf(best.likelihood.status)
-                             : "most samples have no points of the board",
-                  {}},
-                 {RefineMethod::kJoint, best.joint.problem, {}}};
+  best.trials = {
+      {RefineMethod::kAverage, "", ScoreScene(samples, camera, T_start)},
+      {RefineMethod::kReprojection, ProblemOf(reprojection.status), {}},
+      {RefineMethod::kLikelihood,
+       has_points ? ProblemOf(best.likelihood.status) : "most samples have no points of the board",
+       {}},
+      {RefineMethod::kJoint, best.joint.problem, {}}};
   const std::vector<WithoutOne> without =
       LeaveOneOut(samples, camera, T_start, best.likelihood, options);
   if (reprojection.IsUsable()) {
@@ -256,6 +255,7 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
     case RefineMethod::kJoint:
       best.T_camera_lidar = best.joint.T_camera_lidar();
       best.covariance = best.joint.covariance();
+      best.scene_note = best.joint.scene.reason;
       break;
   }
   best.reprojection_rms_px = CentreRmsPx(ScoreScene(samples, camera, best.T_camera_lidar));

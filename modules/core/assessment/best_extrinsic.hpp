@@ -66,7 +66,8 @@ struct BestExtrinsic {
   std::vector<MethodTrial> trials;  ///< Average, reprojection, likelihood, joint.
   /// What the likelihood found, also if another method was chosen; its status says if it did.
   LikelihoodExtrinsic likelihood;
-  JointExtrinsic joint;  ///< Also if another method was chosen.
+  JointExtrinsic joint;    ///< Also if another method was chosen.
+  std::string scene_note;  ///< What the scenes have to do with it, a sentence; empty: not asked.
 
   bool IsUsable() const { return problem.empty(); }
   /// The lidar's faults that go with the extrinsic: none, unless it is the likelihood's or joint.

@@ -6,12 +6,12 @@ namespace voqcal {
 
 Eigen::Isometry3d JointExtrinsic::Without(const Eigen::Isometry3d& T_reprojection,
                                           const Eigen::Isometry3d& T_likelihood) const {
-  const Eigen::Isometry3d T_board = PerturbLeft(
-      T_reprojection, board.gain * DifferenceLeft(T_reprojection, T_likelihood));
+  const Eigen::Isometry3d T_board =
+      PerturbLeft(T_reprojection, board.gain * DifferenceLeft(T_reprojection, T_likelihood));
   // The board's share of what is known: the rest is the scene's.
-  const Matrix6d share =
-      scene.is_used ? Matrix6d(scene.covariance * board.extrinsic.covariance.inverse())
-                    : Matrix6d(Matrix6d::Identity());
+  const Matrix6d share = scene.is_used
+                             ? Matrix6d(scene.covariance * board.extrinsic.covariance.inverse())
+                             : Matrix6d(Matrix6d::Identity());
   return PerturbLeft(scene.T_camera_lidar,
                      share * DifferenceLeft(board.extrinsic.T_camera_lidar, T_board));
 }
@@ -33,8 +33,7 @@ JointExtrinsic RefineJointly(const RefinedExtrinsic& reprojection,
   const UncertainExtrinsic robust{reprojection.T_camera_lidar, reprojection.covariance};
   joint.board.extrinsic = robust;
   if (likelihood != nullptr) {
-    joint.board =
-        Combine(robust, {likelihood->T_camera_lidar, likelihood->uncertainty.covariance});
+    joint.board = Combine(robust, {likelihood->T_camera_lidar, likelihood->uncertainty.covariance});
   }
   joint.scene = RefineByScene(views,
                               camera,

@@ -21,11 +21,11 @@ struct CombinedExtrinsic {
   double disagreement = 0;
 };
 
-/// Weighs two estimates by their covariances: `robust` assumes little, `sharp` more. As in Hausman's
-/// test (Specification tests in econometrics, 1978), a difference beyond what the covariances
-/// expect says that what `sharp` assumes is wrong: its covariance is widened by the square of the
-/// excess, so that it counts less the less they agree. Both saw the same samples: the covariance
-/// takes them for fully correlated as far as they tell the same.
+/// Weighs two estimates by their covariances: `robust` assumes little, `sharp` more. As in
+/// Hausman's test (Specification tests in econometrics, 1978), a difference beyond what the
+/// covariances expect says that what `sharp` assumes is wrong: its covariance is widened by the
+/// square of the excess, so that it counts less the less they agree. Both saw the same samples: the
+/// covariance takes them for fully correlated as far as they tell the same.
 CombinedExtrinsic Combine(const UncertainExtrinsic& robust, const UncertainExtrinsic& sharp);
 
 }  // namespace voqcal

@@ -196,8 +196,8 @@ Vector6d MoveByRangeOffset(const std::vector<const BoardSample*>& samples,
   Vector6d pull = Vector6d::Zero();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const PoseResiduals& pose = linear.poses[i];
-    pull -= pose.J.transpose() *
-            pose.sqrt_weights.cwiseAbs2().cwiseProduct(there.poses[i].r - pose.r);
+    pull -=
+        pose.J.transpose() * pose.sqrt_weights.cwiseAbs2().cwiseProduct(there.poses[i].r - pose.r);
   }
   return curvature_inverse * pull;
 }
@@ -276,8 +276,8 @@ RefinedExtrinsic RefineExtrinsic(const std::vector<const BoardSample*>& samples,
     return refined;
   }
   if (const std::optional<double> factor = FewPosesFactor(samples.size())) {
-    const Vector6d by_offset = MoveByRangeOffset(
-        samples, camera, T_camera_lidar, options, linear, curvature_inverse);
+    const Vector6d by_offset =
+        MoveByRangeOffset(samples, camera, T_camera_lidar, options, linear, curvature_inverse);
     refined.covariance =
         *factor * PooledSandwich(linear, curvature_inverse) + by_offset * by_offset.transpose();
   }

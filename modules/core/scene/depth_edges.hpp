@@ -24,8 +24,8 @@ struct DepthEdgeOptions {
   double min_range_m = 0.5;    ///< Nearer returns are the vehicle's own.
 };
 
-/// The edges of one sweep, scan line by scan line, in order of azimuth. Returns of one ring, or else
-/// of one elevation, are neighbours.
+/// The edges of one sweep, scan line by scan line, in order of azimuth. Returns of one ring, or
+/// else of one elevation, are neighbours.
 std::vector<DepthEdge> FindDepthEdges(const PointCloud& cloud_lidar_m,
                                       const DepthEdgeOptions& options);
 

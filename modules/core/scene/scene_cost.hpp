@@ -22,7 +22,8 @@ using SceneMatrix = Eigen::Matrix<double, kSceneParameters, kSceneParameters>;
 /// One depth edge as the cost takes it.
 struct SceneEdge {
   Eigen::Vector3d position_lidar_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d outward_lidar_m = Eigen::Vector3d::Zero();  ///< How it moves by the outset, 1 rad.
+  Eigen::Vector3d outward_lidar_m =
+      Eigen::Vector3d::Zero();  ///< How it moves by the outset, 1 rad.
   double weight = 1.0;
   std::size_t view = 0;
   int sector = 0;

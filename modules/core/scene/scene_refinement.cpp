@@ -13,6 +13,7 @@
 #include <ceres/solver.h>
 
 #include "core/format.hpp"
+#include "core/parallel.hpp"
 #include "core/problems.hpp"
 #include "core/scene/scene_cost.hpp"
 
@@ -56,8 +57,8 @@ class SceneCost final : public ceres::CostFunction {
     const bool wants_J = jacobians != nullptr && jacobians[0] != nullptr;
     Eigen::Matrix<double, 1, kSceneParameters> J;
     for (std::size_t i = 0; i < edges_.size(); ++i) {
-      const double surprise = SurpriseAt(
-          *edges_[i], fields_, *scene_.camera, at, unknowns[6], wants_J ? &J : nullptr);
+      const double surprise =
+          SurpriseAt(*edges_[i], fields_, *scene_.camera, at, unknowns[6], wants_J ? &J : nullptr);
       residuals[i] = std::sqrt(2 * scale_ * edges_[i]->weight * surprise);
       if (!wants_J) continue;
       Eigen::Map<Eigen::Matrix<double, 1, kSceneParameters>> row(jacobians[0] +
@@ -104,8 +105,7 @@ void MinimiseAt(const Scene& scene,
                 int max_iterations,
                 SceneVector* unknowns) {
   ceres::Problem problem;
-  problem.AddResidualBlock(
-      new SceneCost(scene, fields, sectors, scale), nullptr, unknowns->data());
+  problem.AddResidualBlock(new SceneCost(scene, fields, sectors, scale), nullptr, unknowns->data());
   problem.AddResidualBlock(new PriorCost(scene.prior), nullptr, unknowns->data());
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
@@ -125,8 +125,7 @@ double MeanSurprise(const Scene& scene, Sectors sectors, const SceneVector& unkn
   double sum_weights = 0;
   for (const SceneEdge& edge : scene.edges) {
     if (!IsIn(sectors, edge)) continue;
-    sum += edge.weight *
-           SurpriseAt(edge, scene.Finest(), *scene.camera, at, unknowns[6], nullptr);
+    sum += edge.weight * SurpriseAt(edge, scene.Finest(), *scene.camera, at, unknowns[6], nullptr);
     sum_weights += edge.weight;
   }
   return sum / sum_weights;
@@ -206,16 +205,14 @@ Trust TrustAt(const Scene& scene, const SceneVector& unknowns) {
   const double gain = 1 / MeanSurprise(scene, kAllSectors, unknowns) - 1;  // a - 1
   Trust trust;
   const SceneVector squares = Steps().cwiseAbs2();
-  trust.scale = std::min(H.diagonal().dot(squares) / G.diagonal().dot(squares), std::max(gain, 0.0));
+  trust.scale =
+      std::min(H.diagonal().dot(squares) / G.diagonal().dot(squares), std::max(gain, 0.0));
   trust.redundancy = gain / trust.scale;
   return trust;
 }
 
-SceneVector Solve(const Scene& scene,
-                  Sectors sectors,
-                  double scale,
-                  int max_iterations,
-                  SceneVector unknowns) {
+SceneVector Solve(
+    const Scene& scene, Sectors sectors, double scale, int max_iterations, SceneVector unknowns) {
   for (const auto& fields : scene.levels) {
     MinimiseAt(scene, fields, sectors, scale, max_iterations, &unknowns);
   }
@@ -229,17 +226,16 @@ void CrossValidate(const Scene& scene,
                    const SceneVector& unknowns,
                    SceneRefinement* refined) {
   std::array<double, kNumFolds> gains{};
-  double mean = 0;
-  for (int fold = 0; fold < kNumFolds; ++fold) {
+  ParallelFor(kNumFolds, [&](std::size_t fold) {
     const Sectors held_out = (1U << fold) | (1U << (fold + kNumFolds));
     SceneVector others = unknowns;
     MinimiseAt(scene, scene.Finest(), kAllSectors & ~held_out, scale, max_iterations, &others);
     SceneVector before = SceneVector::Zero();
     before[6] = others[6];  // the outset is no merit of the extrinsic
-    double& gain = gains[static_cast<std::size_t>(fold)];
-    gain = MeanSurprise(scene, held_out, before) - MeanSurprise(scene, held_out, others);
-    mean += gain / kNumFolds;
-  }
+    gains[fold] = MeanSurprise(scene, held_out, before) - MeanSurprise(scene, held_out, others);
+  });
+  double mean = 0;
+  for (const double gain : gains) mean += gain / kNumFolds;
   double variance = 0;
   for (const double gain : gains) variance += (gain - mean) * (gain - mean) / (kNumFolds - 1.0);
   refined->held_out_gain = mean;
@@ -269,8 +265,7 @@ std::vector<std::string> SceneRefinementOptions::Problems() const {
   for (const double blur_px : blurs_px) problems.RequirePositive("blurs_px", blur_px);
   problems.RequirePositive("outset_prior_rad", outset_prior_rad);
   problems.RequirePositive("shared_error_rad", shared_error_rad);
-  problems.Require(
-      min_gain_sigmas >= 0, "min_gain_sigmas must not be negative", min_gain_sigmas);
+  problems.Require(min_gain_sigmas >= 0, "min_gain_sigmas must not be negative", min_gain_sigmas);
   problems.RequirePositive("max_iterations", max_iterations);
   return problems.lines();
 }
@@ -291,9 +286,9 @@ SceneRefinement RefineByScene(const std::vector<SceneView>& views,
   refined.num_scenes = static_cast<int>(views.size());
   refined.num_edges = static_cast<int>(scene.edges.size());
   if (refined.num_edges < options.min_edges) {
-    refined.reason = views.empty() ? "no scene was kept with the samples"
-                                   : Format("only %d depth edges lie in the images",
-                                            refined.num_edges);
+    refined.reason = views.empty()
+                         ? "no scene was kept with the samples"
+                         : Format("only %d depth edges lie in the images", refined.num_edges);
     return refined;
   }
   scene.prior.topLeftCorner<6, 6>() = covariance.inverse();
@@ -310,25 +305,25 @@ SceneRefinement RefineByScene(const std::vector<SceneView>& views,
     unknowns = Solve(scene, kAllSectors, trust.scale, options.max_iterations, unknowns);
     trust = TrustAt(scene, unknowns);
   }
-  MinimiseAt(
-      scene, scene.Finest(), kAllSectors, trust.scale, options.max_iterations, &unknowns);
+  MinimiseAt(scene, scene.Finest(), kAllSectors, trust.scale, options.max_iterations, &unknowns);
   refined.redundancy = trust.redundancy;
   refined.outset_rad = unknowns[6];
   refined.surprise_after = MeanSurprise(scene, kAllSectors, unknowns);
-  const Vector6d move = unknowns.head<6>();
-  refined.move_chi2 = move.dot(covariance.inverse() * move);
+  refined.move = unknowns.head<6>();
+  refined.move_covariance = CovarianceAt(scene, unknowns, trust.scale, options.shared_error_rad);
+  refined.move_chi2 = refined.move.dot(scene.prior.topLeftCorner<6, 6>() * refined.move);
   CrossValidate(scene, trust.scale, options.max_iterations, unknowns, &refined);
   const std::string gain = Format("parts of the scene left out fit %s by %.4f +- %.4f",
                                   refined.held_out_gain > 0 ? "better" : "worse",
                                   std::abs(refined.held_out_gain),
                                   refined.held_out_gain_sigma);
   if (!(refined.held_out_gain > options.min_gain_sigmas * refined.held_out_gain_sigma)) {
-    refined.reason = gain;
+    refined.reason = "the boards alone decide: " + gain;
     return refined;
   }
   refined.is_used = true;
-  refined.T_camera_lidar = PerturbLeft(T_camera_lidar, move);
-  refined.covariance = CovarianceAt(scene, unknowns, trust.scale, options.shared_error_rad);
+  refined.T_camera_lidar = PerturbLeft(T_camera_lidar, refined.move);
+  refined.covariance = refined.move_covariance;
   refined.reason = gain;
   return refined;
 }

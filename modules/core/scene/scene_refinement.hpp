@@ -48,6 +48,10 @@ struct SceneRefinement {
   /// How many edges err alike: each counts for one over this.
   double redundancy = std::numeric_limits<double>::quiet_NaN();
   double outset_rad = std::numeric_limits<double>::quiet_NaN();
+  /// Where the scene and what was given want the extrinsic, PerturbLeft of the given one, and how
+  /// well that is known; also if it is not used.
+  Vector6d move = Vector6d::Zero();
+  Matrix6d move_covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
   /// How far the scene moves what was given, squared, over its covariance: about 6 is expected.
   double move_chi2 = std::numeric_limits<double>::quiet_NaN();
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -116,6 +117,27 @@ cv::Mat RankOf(const cv::Mat& magnitude, const cv::Mat& mask) {
   return rank;
 }
 
+// The mask in the reduced image, of its size and reduction.
+using MakeMask = std::function<cv::Mat(const cv::Size& size, double reduction)>;
+
+SceneView ViewOf(const std::vector<DepthEdge>& edges,
+                 const cv::Mat& image,
+                 const CameraModel& camera,
+                 const SceneViewOptions& options,
+                 const MakeMask& make_mask) {
+  RequireUsable("SceneViewOptions", options.Problems());
+  if (image.cols != camera.width_px || image.rows != camera.height_px || image.depth() != CV_8U) {
+    throw std::invalid_argument("MakeSceneView: the image is not of the camera's size");
+  }
+  SceneView view;
+  view.edges = edges;
+  const cv::Mat gray = ReducedGray(image, options.max_image_width_px);
+  view.reduction = static_cast<double>(image.cols) / gray.cols;
+  view.edge_rank = RankOf(GradientMagnitude(gray, options.image_blur_px),
+                          make_mask(gray.size(), view.reduction));
+  return view;
+}
+
 }  // namespace
 
 std::vector<std::string> SceneViewOptions::Problems() const {
@@ -123,8 +145,7 @@ std::vector<std::string> SceneViewOptions::Problems() const {
   problems.RequirePositive("min_jump_m", edges.min_jump_m);
   problems.RequirePositive("max_step_rad", edges.max_step_rad);
   problems.Require(board_margin_m >= 0, "board_margin_m must not be negative", board_margin_m);
-  problems.Require(
-      edges.min_range_m >= 0, "min_range_m must not be negative", edges.min_range_m);
+  problems.Require(edges.min_range_m >= 0, "min_range_m must not be negative", edges.min_range_m);
   problems.Require(
       max_image_width_px >= 16, "max_image_width_px must be at least 16", max_image_width_px);
   problems.RequirePositive("image_blur_px", image_blur_px);
@@ -137,21 +158,24 @@ SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
                         const BoardSpec& board,
                         const CameraModel& camera,
                         const SceneViewOptions& options) {
-  RequireUsable("SceneViewOptions", options.Problems());
-  if (image.cols != camera.width_px || image.rows != camera.height_px || image.depth() != CV_8U) {
-    throw std::invalid_argument("MakeSceneView: the image is not of the camera's size");
-  }
-  SceneView view;
-  view.edges = WithoutBoard(FindDepthEdges(cloud_lidar_m, options.edges),
-                            sample.lidar.pose,
-                            board,
-                            options.board_margin_m);
-  const cv::Mat gray = ReducedGray(image, options.max_image_width_px);
-  view.reduction = static_cast<double>(image.cols) / gray.cols;
-  const cv::Mat mask = BackgroundMask(
-      gray.size(), view.reduction, sample.camera.pose, board, camera, options.board_margin_m);
-  view.edge_rank = RankOf(GradientMagnitude(gray, options.image_blur_px), mask);
-  return view;
+  const auto edges = WithoutBoard(FindDepthEdges(cloud_lidar_m, options.edges),
+                                  sample.lidar.pose,
+                                  board,
+                                  options.board_margin_m);
+  return ViewOf(edges, image, camera, options, [&](const cv::Size& size, double reduction) {
+    return BackgroundMask(
+        size, reduction, sample.camera.pose, board, camera, options.board_margin_m);
+  });
+}
+
+SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
+                        const cv::Mat& image,
+                        const CameraModel& camera,
+                        const SceneViewOptions& options) {
+  const auto edges = FindDepthEdges(cloud_lidar_m, options.edges);
+  return ViewOf(edges, image, camera, options, [](const cv::Size& size, double) {
+    return cv::Mat(size, CV_8U, cv::Scalar(1));
+  });
 }
 
 }  // namespace voqcal

@@ -44,4 +44,10 @@ SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
                         const CameraModel& camera,
                         const SceneViewOptions& options);
 
+/// The same of a scene without a board, or with one that need not be left out.
+SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
+                        const cv::Mat& image,
+                        const CameraModel& camera,
+                        const SceneViewOptions& options);
+
 }  // namespace voqcal

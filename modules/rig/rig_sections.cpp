@@ -245,6 +245,16 @@ void ReadExtrinsicEstimator(YamlSection* top,
   Finish(*options, &section);
 }
 
+void ReadSceneRefinement(YamlSection* refiner, SceneRefinementOptions* options) {
+  YamlSection section = refiner->Section("scene");
+  section.Read("min_edges", &options->min_edges);
+  section.ReadDegrees("outset_prior_deg", &options->outset_prior_rad);
+  section.ReadDegrees("shared_error_deg", &options->shared_error_rad);
+  section.Read("min_gain_sigmas", &options->min_gain_sigmas);
+  section.Read("max_iterations", &options->max_iterations);
+  Finish(*options, &section);
+}
+
 void ReadLikelihood(YamlSection* refiner, LikelihoodOptions* options) {
   YamlSection section = refiner->Section("likelihood");
   section.Read("common_prior_m", &options->common_prior_m);
@@ -279,6 +289,7 @@ void ReadExtrinsicRefiner(YamlSection* top, RefinerOptions* options) {
   section.Read("range_offset_m", &options->reprojection.range_offset_m);
   section.Read("max_iterations", &options->reprojection.max_iterations);
   ReadLikelihood(&section, &options->likelihood);
+  ReadSceneRefinement(&section, &options->scene);
   Finish(options->reprojection, &section);
 }
 

@@ -10,6 +10,7 @@
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_result.hpp"
 #include "messaging/made_from.hpp"
+#include "messaging/session_views.hpp"
 
 namespace voqcal {
 namespace {
@@ -60,11 +61,15 @@ ChosenSamples ChosenOf(const samples_t& samples, const extrinsic_averaged_t& ave
 
 }  // namespace
 
-AssessorNode::AssessorNode(const Rig& rig, Bus* bus, const std::filesystem::path& session_folder)
-    : rig_(rig),
-      bus_(*bus),
-      session_folder_(session_folder),
-      views_(rig, session_folder / kSamplesLogName) {
+AssessorNode::AssessorNode(const Rig& rig,
+                           Bus* bus,
+                           const std::filesystem::path& session_folder,
+                           SceneViewsOf scene_views)
+    : rig_(rig), bus_(*bus), session_folder_(session_folder), scene_views_(std::move(scene_views)) {
+  if (!scene_views_) {
+    scene_views_ = ViewsOfSession(
+        rig.board, rig.camera, rig.scene_check.view, session_folder / kSamplesLogName);
+  }
   std::error_code error;
   std::filesystem::create_directories(session_folder_, error);
   if (error) {

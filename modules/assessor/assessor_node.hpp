@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "assessor/session_views.hpp"
+#include "core/calibration/calibrate.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "result/result_file.hpp"
@@ -23,7 +23,11 @@ class AssessorNode : public Module {
  public:
   /// @param bus  borrowed; must outlive the node.
   /// @param session_folder  where extrinsic.yaml goes, whole or not at all.
-  AssessorNode(const Rig& rig, Bus* bus, const std::filesystem::path& session_folder);
+  /// @param scene_views  of the session's samples; empty: by the folder's own samples.lcm.
+  AssessorNode(const Rig& rig,
+               Bus* bus,
+               const std::filesystem::path& session_folder,
+               SceneViewsOf scene_views = {});
 
   std::string Name() const override { return "assessor"; }
   std::string State() const override;
@@ -42,7 +46,7 @@ class AssessorNode : public Module {
   Rig rig_;
   Bus& bus_;
   std::filesystem::path session_folder_;
-  SessionViews views_;
+  SceneViewsOf scene_views_;
   std::optional<samples_t> samples_;
   std::optional<extrinsic_averaged_t> averaged_;
   std::optional<extrinsic_refined_t> refined_;

@@ -1,5 +1,6 @@
 #include "extrinsic_refiner/extrinsic_refiner_node.hpp"
 
+#include <utility>
 #include <vector>
 
 #include "messaging/convert_board.hpp"
@@ -8,7 +9,8 @@
 
 namespace voqcal {
 
-ExtrinsicRefinerNode::ExtrinsicRefinerNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
+ExtrinsicRefinerNode::ExtrinsicRefinerNode(const Rig& rig, Bus* bus, SceneViewsOf scene_views)
+    : rig_(rig), bus_(*bus), scene_views_(std::move(scene_views)) {
   bus_.Keep(rig_.channels.calib_samples, &samples_);
   bus_.Keep(rig_.channels.extrinsic_averaged, &averaged_);
 }
@@ -42,7 +44,11 @@ extrinsic_refined_t ExtrinsicRefinerNode::Refine() const {
     const std::vector<const BoardSample*> samples =
         SamplesWithout(all, averaged_->inconsistent_ids);
     const BestExtrinsic best =
-        RefineBest(samples, rig_.camera, FromMessage(*averaged_), rig_.extrinsic_refiner);
+        RefineBest(samples,
+                   rig_.camera,
+                   FromMessage(*averaged_),
+                   scene_views_ ? scene_views_(samples) : std::vector<SceneView>(),
+                   rig_.extrinsic_refiner);
     result = ToMessage(best, IdsOf(samples));
   }
   StampMadeFrom(*samples_, &result);

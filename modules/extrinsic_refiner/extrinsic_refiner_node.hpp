@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "core/calibration/calibrate.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/rig.hpp"
@@ -13,11 +14,12 @@
 namespace voqcal {
 
 /// CALIB_SAMPLES and EXTRINSIC_AVERAGED in, EXTRINSIC_REFINED out: refines the average over every
-/// consistent sample.
+/// consistent sample and its scene.
 class ExtrinsicRefinerNode : public Module {
  public:
   /// @param bus  borrowed; must outlive the node.
-  ExtrinsicRefinerNode(const Rig& rig, Bus* bus);
+  /// @param scene_views  of the session's samples; empty: the boards alone.
+  ExtrinsicRefinerNode(const Rig& rig, Bus* bus, SceneViewsOf scene_views = {});
 
   std::string Name() const override { return "extrinsic_refiner"; }
   std::string State() const override;
@@ -29,6 +31,7 @@ class ExtrinsicRefinerNode : public Module {
 
   Rig rig_;
   Bus& bus_;
+  SceneViewsOf scene_views_;
   std::optional<samples_t> samples_;
   std::optional<extrinsic_averaged_t> averaged_;
   std::optional<extrinsic_refined_t> result_;

@@ -3,8 +3,10 @@
 #include "extrinsic_refiner/extrinsic_refiner_node.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/process.hpp"
+#include "messaging/session_views.hpp"
 #include "messaging/spin.hpp"
 #include "rig/rig.hpp"
+#include "rig/session.hpp"
 
 int main(int argc, char** argv) {
   const voqcal::ProcessInfo info{
@@ -13,7 +15,14 @@ int main(int argc, char** argv) {
   return voqcal::RunProcess(argc, argv, info, [](const voqcal::ProcessArgs& args) {
     const voqcal::Rig rig = voqcal::LoadRig(args.rig_path);
     voqcal::Bus bus(args.lcm_url.value_or(rig.lcm_url));
-    voqcal::ExtrinsicRefinerNode node(rig, &bus);
+    voqcal::ExtrinsicRefinerNode node(
+        rig,
+        &bus,
+        voqcal::ViewsOfSession(
+            rig.board,
+            rig.camera,
+            rig.scene_check.view,
+            voqcal::SessionFolder(args.session_dir, rig) / voqcal::kSamplesLogName));
     voqcal::Spin(bus, node, rig.channels.module_status);
     spdlog::info(node.Summary());
   });

@@ -2,7 +2,7 @@
 
 #include "core/assessment/diagnosis.hpp"
 #include "core/assessment/predicted_error.hpp"
-#include "core/assessment/scene_check.hpp"
+#include "core/scene/scene_check.hpp"
 #include "core/assessment/score_bins.hpp"
 #include "core/assessment/verdict.hpp"
 #include "voqcal/finding_t.hpp"

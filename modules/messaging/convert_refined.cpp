@@ -81,6 +81,7 @@ extrinsic_refined_t ToMessage(const BestExtrinsic& best,
   message.problem = best.problem;
   message.T_camera_lidar = ToMessage(best.T_camera_lidar);
   message.method = ToString(best.method);
+  message.scene = best.scene_note;
   Eigen::Map<RowMajor6d>(&message.covariance[0][0]) = best.covariance;
   message.reprojection_rms_px = best.reprojection_rms_px;
   message.sample_ids = sample_ids;
@@ -107,6 +108,7 @@ BestExtrinsic FromMessage(const extrinsic_refined_t& message) {
   best.problem = message.problem;
   best.T_camera_lidar = FromMessage(message.T_camera_lidar);
   best.method = MethodFromString(message.method);
+  best.scene_note = message.scene;
   best.covariance = Eigen::Map<const RowMajor6d>(&message.covariance[0][0]);
   best.reprojection_rms_px = message.reprojection_rms_px;
   std::vector<PoseScore> poses;

@@ -5,7 +5,7 @@
 
 #include "core/assessment/diagnosis.hpp"
 #include "core/assessment/predicted_error.hpp"
-#include "core/assessment/scene_check.hpp"
+#include "core/scene/scene_check.hpp"
 #include "core/assessment/score_bins.hpp"
 
 namespace voqcal {

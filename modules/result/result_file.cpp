@@ -38,9 +38,12 @@ std::string Averaged(const AveragedPart& averaged) {
 std::string Methods(const CalibrationResult& result) {
   std::string text =
       "method: " + ToString(result.method) +
-      "  # the least error_mm, unless the rig file names one\n"
+      "\n"
+      "scene_note: " +
+      QuotedYaml(result.scene_note) +
+      "  # what the scenes' edges have to do with it\n"
       "methods:  # on poses held out; error_mm: geometric mean of centre and corner\n";
-  if (result.trials.empty()) text = text.substr(0, text.find('\n') + 1) + "methods: []\n";
+  if (result.trials.empty()) text = text.substr(0, text.find("methods:")) + "methods: []\n";
   for (const MethodTrial& trial : result.trials) {
     text += "  - {method: " + ToString(trial.method) +
             ", error_mm: " + NumberText(trial.ErrorMm()) +

@@ -10,7 +10,7 @@
 
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/diagnosis.hpp"
-#include "core/assessment/scene_check.hpp"
+#include "core/scene/scene_check.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/calibration/calibrate.hpp"
 #include "core/camera/camera_model.hpp"

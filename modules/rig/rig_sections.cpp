@@ -260,6 +260,16 @@ void ReadExtrinsicEstimator(YamlSection* top,
   CheckAndClose(*options, &section);
 }
 
+void ReadSceneRefinement(YamlSection* refiner, SceneRefinementOptions* options) {
+  YamlSection section = refiner->Section("scene");
+  section.Read("min_edges", &options->min_edges);
+  section.ReadDegrees("outset_prior_deg", &options->outset_prior_rad);
+  section.ReadDegrees("shared_error_deg", &options->shared_error_rad);
+  section.Read("min_gain_sigmas", &options->min_gain_sigmas);
+  section.Read("max_iterations", &options->max_iterations);
+  CheckAndClose(*options, &section);
+}
+
 void ReadLikelihood(YamlSection* refiner, LikelihoodOptions* options) {
   YamlSection section = refiner->Section("likelihood");
   section.Read("common_prior_m", &options->common_prior_m);
@@ -286,13 +296,15 @@ void ReadExtrinsicRefiner(YamlSection* top, RefinerOptions* options) {
   section.Read("method", &method);
   options->method = RefineMethodFromString(method);
   if (!options->method && method != "automatic") {
-    section.AddError("method", "must be automatic, likelihood, reprojection or average");
+    section.AddError("method", "must be automatic, joint, likelihood, reprojection or average");
   }
   section.Read("centre_weight", &options->reprojection.centre_weight);
   section.Read("corner_weight", &options->reprojection.corner_weight);
   section.Read("huber_px", &options->reprojection.huber_px);
+  section.Read("range_offset_m", &options->reprojection.range_offset_m);
   section.Read("max_iterations", &options->reprojection.max_iterations);
   ReadLikelihood(&section, &options->likelihood);
+  ReadSceneRefinement(&section, &options->scene);
   CheckAndClose(options->reprojection, &section);
 }
 
@@ -304,10 +316,10 @@ void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
   section.ReadDegrees("tolerance_deg", &options->tolerance_rad);
   section.Read("num_sigmas", &options->num_sigmas);
   section.Read("min_gain_sigmas", &options->min_gain_sigmas);
-  section.Read("min_jump_m", &options->view.min_jump_m);
-  section.ReadDegrees("max_step_deg", &options->view.max_step_rad);
+  section.Read("min_jump_m", &options->view.edges.min_jump_m);
+  section.ReadDegrees("max_step_deg", &options->view.edges.max_step_rad);
   section.Read("board_margin_m", &options->view.board_margin_m);
-  section.Read("min_range_m", &options->view.min_range_m);
+  section.Read("min_range_m", &options->view.edges.min_range_m);
   section.Read("max_image_width_px", &options->view.max_image_width_px);
   section.Read("image_blur_px", &options->view.image_blur_px);
   CheckAndClose(*options, &section);

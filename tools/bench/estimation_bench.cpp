@@ -118,7 +118,7 @@ void RefineBestOf(benchmark::State& state) {
   AveragedExtrinsic average;
   average.T_camera_lidar = test::TestExtrinsic();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(RefineBest(all, test::TestCamera(), average, RefinerOptions{}));
+    benchmark::DoNotOptimize(RefineBest(all, test::TestCamera(), average, {}, RefinerOptions{}));
   }
 }
 BENCHMARK(RefineBestOf)->Arg(30)->Unit(benchmark::kMillisecond);

@@ -10,6 +10,7 @@
 
 #include "messaging/convert_result.hpp"
 #include "messaging/log.hpp"
+#include "messaging/session_views.hpp"
 #include "sample_collector/session_log.hpp"
 
 namespace voqcal {
@@ -22,8 +23,10 @@ OfflineRun::OfflineRun(const Rig& rig, const std::filesystem::path& session_fold
       collector_(rig, &bus_, session_folder),
       selector_(rig, &bus_),
       estimator_(rig, &bus_),
-      refiner_(rig, &bus_),
-      assessor_(rig, &bus_, session_folder),
+      scene_views_(ViewsOfSession(
+          rig.board, rig.camera, rig.scene_check.view, session_folder / kSamplesLogName)),
+      refiner_(rig, &bus_, scene_views_),
+      assessor_(rig, &bus_, session_folder, scene_views_),
       averaged_{} {
   bus_.Subscribe<extrinsic_averaged_t>(channels_.extrinsic_averaged,
                                        Queue::kState,

@@ -71,6 +71,7 @@ class OfflineRun {
   SampleCollectorNode collector_;
   VoqSelectorNode selector_;
   ExtrinsicEstimatorNode estimator_;
+  SceneViewsOf scene_views_;
   ExtrinsicRefinerNode refiner_;
   AssessorNode assessor_;
   extrinsic_averaged_t averaged_;

@@ -57,6 +57,7 @@ std::string MethodLines(const CalibrationResult& result) {
             (trial.problem.empty() ? TrialText(trial) : ": " + trial.problem);
   }
   text += ")\n";
+  if (!result.scene_note.empty()) text += "scene   " + result.scene_note + "\n";
   if (!result.lidar_bias.IsObservable()) return text + "lidar's range errors  not estimated\n";
   double lowest_m = 0.0;
   double highest_m = 0.0;

@@ -12,6 +12,8 @@ void AddCoverage(CLI::App* app);
 void AddField(CLI::App* app);
 void AddGuidance(CLI::App* app);
 void AddGuidanceBound(CLI::App* app);
+void AddMethods(CLI::App* app);
+void AddRepeatability(CLI::App* app);
 void AddSubsets(CLI::App* app);
 
 void AddCameraDetection(CLI::App* app);

@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
   voqcal::AddGuidance(&app);
   voqcal::AddGuidanceBound(&app);
   voqcal::AddLidarDetection(&app);
+  voqcal::AddMethods(&app);
+  voqcal::AddRepeatability(&app);
   voqcal::AddSceneCheckPower(&app);
   voqcal::AddSubsets(&app);
   return voqcal::RunTool(&app, argc, argv, [] {});

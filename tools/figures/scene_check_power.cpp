@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "assessor/session_views.hpp"
-#include "core/assessment/scene_check.hpp"
+#include "core/scene/scene_check.hpp"
 #include "core/units.hpp"
 #include "figures/figures.hpp"
+#include "messaging/session_views.hpp"
 #include "result/result_file.hpp"
 #include "rig/rig.hpp"
 #include "sample_collector/session_log.hpp"
@@ -34,7 +34,8 @@ void Print(const Args& args) {
   const Rig rig = LoadRig(args.rig);
   const Eigen::Isometry3d T_camera_lidar = ReadExtrinsic(args.session / "extrinsic.yaml");
   const SessionLog session(args.session);
-  SessionViews session_views(rig, args.session / kSamplesLogName);
+  SessionViews session_views(
+      rig.board, rig.camera, rig.scene_check.view, args.session / kSamplesLogName);
   const auto views = session_views.Of(SamplesWithout(session.samples(), {}));
   std::puts("axis turn_deg  verdict");
   const auto print = [&](const char* what, int axis, double turn_deg) {

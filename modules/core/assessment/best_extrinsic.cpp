@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
+#include "core/parallel.hpp"
 #include "core/problems.hpp"
 #include "core/selection/pose_variety.hpp"
 
@@ -22,61 +24,97 @@ std::string ProblemOf(RefineStatus status) {
   return status == RefineStatus::kConverged ? "" : "the refinement is " + ToString(status);
 }
 
-SceneScore LikelihoodHeldOut(const std::vector<const BoardSample*>& samples,
-                             const CameraModel& camera,
-                             const LikelihoodExtrinsic& all,
-                             const LikelihoodOptions& options) {
-  return ScoreHeldOut(samples, [&](const BoardSample& held_out, const auto& others) -> PoseScore {
-    const LikelihoodExtrinsic refined = RefineNearby(others, all, options);
-    if (!refined.IsUsable()) return {};
-    return ScorePose(CorrectedSample(held_out, refined.bias), camera, refined.T_camera_lidar);
+// What the other poses give of one that is held out.
+struct WithoutOne {
+  RefinedExtrinsic reprojection;
+  LikelihoodExtrinsic likelihood;
+};
+
+std::vector<WithoutOne> LeaveOneOut(const std::vector<const BoardSample*>& samples,
+                                    const CameraModel& camera,
+                                    const Eigen::Isometry3d& T_camera_lidar_start,
+                                    const LikelihoodExtrinsic& likelihood,
+                                    const RefinerOptions& options) {
+  std::vector<WithoutOne> without(samples.size());
+  ParallelFor(samples.size(), [&](std::size_t i) {
+    std::vector<const BoardSample*> others = samples;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    without[i].reprojection =
+        RefineExtrinsic(others, camera, T_camera_lidar_start, options.reprojection);
+    if (likelihood.IsUsable()) {
+      without[i].likelihood = RefineNearby(others, likelihood, options.likelihood);
+    }
+  });
+  return without;
+}
+
+// Each sample scored by `score`, of what the others give; NaN where that is not usable.
+template <typename Score>
+SceneScore ScoreEach(const std::vector<const BoardSample*>& samples,
+                     const std::vector<WithoutOne>& without,
+                     const Score& score) {
+  std::vector<PoseScore> poses;
+  for (std::size_t i = 0; i < samples.size(); ++i) poses.push_back(score(*samples[i], without[i]));
+  return SummariseScores(std::move(poses));
+}
+
+SceneScore ReprojectionHeldOut(const std::vector<const BoardSample*>& samples,
+                               const std::vector<WithoutOne>& without,
+                               const CameraModel& camera) {
+  return ScoreEach(samples, without, [&](const BoardSample& sample, const WithoutOne& others) {
+    if (!others.reprojection.IsUsable()) return PoseScore{};
+    return ScorePose(sample, camera, others.reprojection.T_camera_lidar);
   });
 }
 
-MethodTrial TryAverage(const std::vector<const BoardSample*>& samples,
-                       const CameraModel& camera,
-                       const AveragedExtrinsic& average) {
-  return {RefineMethod::kAverage, "", ScoreScene(samples, camera, average.T_camera_lidar)};
+SceneScore LikelihoodHeldOut(const std::vector<const BoardSample*>& samples,
+                             const std::vector<WithoutOne>& without,
+                             const CameraModel& camera) {
+  return ScoreEach(samples, without, [&](const BoardSample& sample, const WithoutOne& others) {
+    const LikelihoodExtrinsic& refined = others.likelihood;
+    if (!refined.IsUsable()) return PoseScore{};
+    return ScorePose(CorrectedSample(sample, refined.bias), camera, refined.T_camera_lidar);
+  });
 }
 
-MethodTrial TryReprojection(const std::vector<const BoardSample*>& samples,
-                            const CameraModel& camera,
-                            const Eigen::Isometry3d& T_camera_lidar_start,
-                            const RefineOptions& options,
-                            RefinedExtrinsic* refined) {
-  MethodTrial trial{RefineMethod::kReprojection, "", {}};
-  *refined = RefineExtrinsic(samples, camera, T_camera_lidar_start, options);
-  trial.problem = ProblemOf(refined->status);
-  if (refined->IsUsable()) {
-    trial.held_out = LeaveOneOutScore(samples, camera, T_camera_lidar_start, options);
-  }
-  return trial;
+SceneScore JointHeldOut(const std::vector<const BoardSample*>& samples,
+                        const std::vector<WithoutOne>& without,
+                        const CameraModel& camera,
+                        const JointExtrinsic& joint) {
+  return ScoreEach(samples, without, [&](const BoardSample& sample, const WithoutOne& others) {
+    if (!others.reprojection.IsUsable()) return PoseScore{};
+    const Eigen::Isometry3d& T_reprojection = others.reprojection.T_camera_lidar;
+    if (!others.likelihood.IsUsable()) {
+      return ScorePose(sample, camera, joint.Without(T_reprojection, T_reprojection));
+    }
+    return ScorePose(CorrectedSample(sample, others.likelihood.bias),
+                     camera,
+                     joint.Without(T_reprojection, others.likelihood.T_camera_lidar));
+  });
 }
 
-MethodTrial TryLikelihood(const std::vector<const BoardSample*>& samples,
-                          const CameraModel& camera,
-                          const Eigen::Isometry3d& T_camera_lidar_start,
-                          const LikelihoodOptions& options,
-                          LikelihoodExtrinsic* refined) {
-  MethodTrial trial{RefineMethod::kLikelihood, "", {}};
-  if (!MostHavePoints(samples)) {
-    trial.problem = "most samples have no points of the board";
-    return trial;
+// The average is of the samples themselves, and the lidar's common offset, which they share.
+Matrix6d CovarianceOfAverage(const std::vector<const BoardSample*>& samples,
+                             const AveragedExtrinsic& average,
+                             double range_offset_m) {
+  Eigen::Vector3d along_view = Eigen::Vector3d::Zero();
+  for (const BoardSample* sample : samples) {
+    along_view += sample->camera.pose.centre_m.normalized() / static_cast<double>(samples.size());
   }
-  *refined = RefineByLikelihood(samples, camera, T_camera_lidar_start, options);
-  trial.problem = ProblemOf(refined->status);
-  if (refined->IsUsable()) {
-    trial.held_out = LikelihoodHeldOut(samples, camera, *refined, options);
-  }
-  return trial;
+  Matrix6d covariance = average.spread.cwiseAbs2().asDiagonal();
+  covariance.bottomRightCorner<3, 3>() +=
+      range_offset_m * range_offset_m * along_view * along_view.transpose();
+  return covariance;
 }
 
-// The named one; else the least error that is known. Without any to go by, the average.
+// The named one; else the joint one; else the least error that is known. Without any score to go by,
+// the average.
 const MethodTrial& Choose(const std::vector<MethodTrial>& trials,
                           const std::optional<RefineMethod>& named) {
   const MethodTrial* best = &trials.front();
   for (const MethodTrial& trial : trials) {
     if (named && trial.method == *named) return trial;
+    if (!named && trial.method == RefineMethod::kJoint && trial.problem.empty()) return trial;
     const bool is_better = std::isnan(best->ErrorMm()) ? !std::isnan(trial.ErrorMm())
                                                        : trial.ErrorMm() < best->ErrorMm();
     if (is_better) best = &trial;
@@ -102,13 +140,17 @@ std::string ToString(RefineMethod method) {
       return "reprojection";
     case RefineMethod::kLikelihood:
       return "likelihood";
+    case RefineMethod::kJoint:
+      return "joint";
   }
   throw std::logic_error("unknown RefineMethod");
 }
 
 std::optional<RefineMethod> RefineMethodFromString(const std::string& name) {
-  for (const RefineMethod method :
-       {RefineMethod::kAverage, RefineMethod::kReprojection, RefineMethod::kLikelihood}) {
+  for (const RefineMethod method : {RefineMethod::kAverage,
+                                    RefineMethod::kReprojection,
+                                    RefineMethod::kLikelihood,
+                                    RefineMethod::kJoint}) {
     if (name == ToString(method)) return method;
   }
   return {};
@@ -118,11 +160,13 @@ std::vector<std::string> RefinerOptions::Problems() const {
   ProblemList problems;
   problems.Add(reprojection.Problems());
   problems.Add(likelihood.Problems());
+  problems.Add(scene.Problems());
   return problems.lines();
 }
 
 LidarBias BestExtrinsic::Bias() const {
-  return method == RefineMethod::kLikelihood ? likelihood.bias : LidarBias{};
+  const bool has_bias = method == RefineMethod::kLikelihood || method == RefineMethod::kJoint;
+  return has_bias ? likelihood.bias : LidarBias{};
 }
 
 BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias) {
@@ -161,6 +205,7 @@ SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
 BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
                          const CameraModel& camera,
                          const AveragedExtrinsic& average,
+                         const std::vector<SceneView>& views,
                          const RefinerOptions& options) {
   RequireUsable("RefinerOptions", options.Problems());
   BestExtrinsic best;
@@ -168,18 +213,44 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
   best.problem = VarietyProblem(samples);
   if (!best.problem.empty()) return best;
 
-  RefinedExtrinsic reprojection;
   const Eigen::Isometry3d& T_start = average.T_camera_lidar;
-  best.trials = {TryAverage(samples, camera, average),
-                 TryReprojection(samples, camera, T_start, options.reprojection, &reprojection),
-                 TryLikelihood(samples, camera, T_start, options.likelihood, &best.likelihood)};
+  const RefinedExtrinsic reprojection =
+      RefineExtrinsic(samples, camera, T_start, options.reprojection);
+  const bool has_points = MostHavePoints(samples);
+  if (has_points) {
+    best.likelihood = RefineByLikelihood(samples, camera, T_start, options.likelihood);
+  }
+  best.joint = RefineJointly(reprojection,
+                             best.likelihood.IsUsable() ? &best.likelihood : nullptr,
+                             views,
+                             camera,
+                             options.scene);
+  best.trials = {
+      {RefineMethod::kAverage, "", ScoreScene(samples, camera, T_start)},
+      {RefineMethod::kReprojection, ProblemOf(reprojection.status), {}},
+      {RefineMethod::kLikelihood,
+       has_points ? ProblemOf(best.likelihood.status) : "most samples have no points of the board",
+       {}},
+      {RefineMethod::kJoint, best.joint.problem, {}}};
+  const std::vector<WithoutOne> without =
+      LeaveOneOut(samples, camera, T_start, best.likelihood, options);
+  if (reprojection.IsUsable()) {
+    best.trials[1].held_out = ReprojectionHeldOut(samples, without, camera);
+  }
+  if (best.likelihood.IsUsable()) {
+    best.trials[2].held_out = LikelihoodHeldOut(samples, without, camera);
+  }
+  if (best.joint.IsUsable()) {
+    best.trials[3].held_out = JointHeldOut(samples, without, camera, best.joint);
+  }
+
   const MethodTrial& chosen = Choose(best.trials, options.method);
   best.method = chosen.method;
   best.problem = chosen.problem;
   best.held_out = chosen.held_out;
   switch (chosen.method) {
     case RefineMethod::kAverage:
-      best.covariance = average.spread.cwiseAbs2().asDiagonal();
+      best.covariance = CovarianceOfAverage(samples, average, options.reprojection.range_offset_m);
       best.held_out = NoScore(samples.size());  // its trial's score is of its own samples
       break;
     case RefineMethod::kReprojection:
@@ -189,6 +260,11 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
     case RefineMethod::kLikelihood:
       best.T_camera_lidar = best.likelihood.T_camera_lidar;
       best.covariance = best.likelihood.uncertainty.covariance;
+      break;
+    case RefineMethod::kJoint:
+      best.T_camera_lidar = best.joint.T_camera_lidar();
+      best.covariance = best.joint.covariance();
+      best.scene_note = best.joint.scene.reason;
       break;
   }
   best.reprojection_rms_px = CentreRmsPx(ScoreScene(samples, camera, best.T_camera_lidar));

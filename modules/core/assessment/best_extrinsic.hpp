@@ -7,12 +7,14 @@
 
 #include <Eigen/Geometry>
 
+#include "core/assessment/joint_extrinsic.hpp"
 #include "core/assessment/scores.hpp"
 #include "core/board/board_sample.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/estimation/average.hpp"
 #include "core/estimation/refine.hpp"
 #include "core/likelihood/likelihood.hpp"
+#include "core/scene/scene_refinement.hpp"
 
 namespace voqcal {
 
@@ -21,17 +23,19 @@ enum class RefineMethod {
   kAverage,       ///< The average over the chosen sets, as it is.
   kReprojection,  ///< RefineExtrinsic.
   kLikelihood,    ///< RefineByLikelihood.
+  kJoint,         ///< RefineJointly: both of these and the scenes.
 };
 
-std::string ToString(RefineMethod method);  ///< "average", "reprojection", "likelihood".
+std::string ToString(RefineMethod method);  ///< "average", "reprojection", ...
 /// Nothing for an unknown name.
 std::optional<RefineMethod> RefineMethodFromString(const std::string& name);
 
 struct RefinerOptions {
-  /// Nothing: the method that generalises best to poses held out.
+  /// Nothing: joint; where that fails, what generalises best to poses held out.
   std::optional<RefineMethod> method;
   RefineOptions reprojection;
   LikelihoodOptions likelihood;
+  SceneRefinementOptions scene;
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;
@@ -59,12 +63,14 @@ struct BestExtrinsic {
   Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
   double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();  ///< Of the centres.
   SceneScore held_out;  ///< The chosen method's; all NaN of the average, which holds none out.
-  std::vector<MethodTrial> trials;  ///< Average, reprojection, likelihood.
+  std::vector<MethodTrial> trials;  ///< Average, reprojection, likelihood, joint.
   /// What the likelihood found, also if another method was chosen; its status says if it did.
   LikelihoodExtrinsic likelihood;
+  JointExtrinsic joint;    ///< Also if another method was chosen.
+  std::string scene_note;  ///< What the scenes have to do with it, a sentence; empty: not asked.
 
   bool IsUsable() const { return problem.empty(); }
-  /// The lidar's faults that go with the extrinsic: none, unless it is the likelihood's.
+  /// The lidar's faults that go with the extrinsic: none, unless it is the likelihood's or joint.
   LidarBias Bias() const;
 };
 
@@ -82,13 +88,15 @@ SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
                           const Eigen::Isometry3d& T_camera_lidar,
                           const LidarBias& bias);
 
-/// Refines `average` by each method (or the one that the options name) and takes the one with the
-/// least MethodTrial::ErrorMm, the average among them: what is published is never worse than it.
-/// The likelihood needs points on most boards.
+/// Refines `average` by each method, and takes the joint one (or the one that the options name).
+/// The likelihood needs points on most boards; without it the joint one is the reprojection's,
+/// refined by the scenes.
+/// @param views  of the samples' scenes; may be empty.
 /// @throws std::invalid_argument if `options` has Problems().
 BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
                          const CameraModel& camera,
                          const AveragedExtrinsic& average,
+                         const std::vector<SceneView>& views,
                          const RefinerOptions& options);
 
 }  // namespace voqcal

@@ -6,6 +6,7 @@
 #include "core/board/half_turn.hpp"
 #include "core/board/what_was_measured.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/parallel.hpp"
 #include "core/units.hpp"
 
 namespace voqcal {
@@ -91,12 +92,12 @@ double CombinedErrorMm(const SceneScore& scene) {
 
 SceneScore ScoreHeldOut(const std::vector<const BoardSample*>& samples,
                         const ScoreByOthers& score) {
-  std::vector<PoseScore> poses;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
+  std::vector<PoseScore> poses(samples.size());
+  ParallelFor(samples.size(), [&](std::size_t i) {
     std::vector<const BoardSample*> others = samples;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    poses.push_back(score(*samples[i], others));
-  }
+    poses[i] = score(*samples[i], others);
+  });
   return SummariseScores(std::move(poses));
 }
 

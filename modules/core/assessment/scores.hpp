@@ -60,7 +60,7 @@ double CombinedErrorMm(const SceneScore& scene);
 using ScoreByOthers = std::function<PoseScore(const BoardSample& held_out,
                                               const std::vector<const BoardSample*>& others)>;
 
-/// Each sample held out in turn.
+/// Each sample held out in turn; `score` is called on several threads at once.
 SceneScore ScoreHeldOut(const std::vector<const BoardSample*>& samples, const ScoreByOthers& score);
 
 /// Each pose scored by the extrinsic refined without it, from the same start: what is held out is

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/assessment/scene_check.hpp"
+#include "core/scene/scene_check.hpp"
 
 namespace voqcal {
 

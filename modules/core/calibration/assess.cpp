@@ -42,6 +42,7 @@ Calibration Assess(const ChosenSamples& chosen,
   result.T_camera_lidar = refined.T_camera_lidar;
   result.covariance = refined.covariance;
   result.method = refined.method;
+  result.scene_note = refined.scene_note;
   result.trials = refined.trials;
   result.lidar_bias = refined.Bias();
   result.averaged = PartOf(average);

@@ -83,7 +83,8 @@ CalibrationOutcome Calibrate(const std::vector<BoardSample>& samples,
   if (!outcome.problem.empty()) return outcome;
 
   const AveragedExtrinsic& average = outcome.averaged.average;
-  outcome.refined = RefineBest(used, task.camera, average, task.options.refinement);
+  const std::vector<SceneView> views = scene_views ? scene_views(used) : std::vector<SceneView>();
+  outcome.refined = RefineBest(used, task.camera, average, views, task.options.refinement);
   outcome.problem = outcome.refined.problem;
   if (!outcome.problem.empty()) return outcome;
 

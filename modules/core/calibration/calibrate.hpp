@@ -6,14 +6,14 @@
 
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/diagnosis.hpp"
-#include "core/assessment/scene_check.hpp"
-#include "core/assessment/scene_view.hpp"
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/calibration/calibration.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/estimation/average.hpp"
 #include "core/estimation/set_extrinsic.hpp"
+#include "core/scene/scene_check.hpp"
+#include "core/scene/scene_view.hpp"
 #include "core/selection/consistency.hpp"
 #include "core/selection/select_sets.hpp"
 

@@ -11,11 +11,11 @@
 #include "core/assessment/diagnosis.hpp"
 #include "core/assessment/lens_correction.hpp"
 #include "core/assessment/predicted_error.hpp"
-#include "core/assessment/scene_check.hpp"
 #include "core/assessment/score_bins.hpp"
 #include "core/assessment/scores.hpp"
 #include "core/assessment/verdict.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/scene/scene_check.hpp"
 
 namespace voqcal {
 
@@ -47,7 +47,8 @@ struct Calibration {
   /// Of [rotation_rad; translation_m], perturbed on the left (camera side).
   Matrix6d covariance = Matrix6d::Zero();
   RefineMethod method = RefineMethod::kAverage;  ///< That T_camera_lidar comes from.
-  std::vector<MethodTrial> trials;               ///< The scores that chose it.
+  std::string scene_note;           ///< What the scenes have to do with it, a sentence.
+  std::vector<MethodTrial> trials;  ///< Every method's scores.
   AveragedPart averaged;
   LidarBias lidar_bias;                     ///< Removed from the boards before they are scored.
   SceneScore held_out;                      ///< Each sample by the extrinsic refined without it.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include <Eigen/Eigenvalues>
@@ -166,6 +167,50 @@ Matrix6d PooledSandwich(const Linearisation& linear, const Matrix6d& curvature_i
   return 0.5 * (covariance + covariance.transpose());
 }
 
+// The lidar's boards as they would be were all ranges longer.
+std::vector<BoardSample> WithRangeOffset(const std::vector<const BoardSample*>& samples,
+                                         double offset_m) {
+  std::vector<BoardSample> moved(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    moved[i].lidar.pose = samples[i]->lidar.pose;
+    moved[i].camera.pose = samples[i]->camera.pose;
+    BoardPose& pose = moved[i].lidar.pose;
+    pose.centre_m += offset_m * pose.centre_m.normalized();
+    for (Eigen::Vector3d& corner_m : pose.corners_m) corner_m += offset_m * corner_m.normalized();
+  }
+  return moved;
+}
+
+// How the minimum moves if all ranges are longer by `offset_m`: A^-1 of the pull by the residuals
+// that this adds.
+Vector6d MoveByRangeOffset(const std::vector<const BoardSample*>& samples,
+                           const CameraModel& camera,
+                           const Eigen::Isometry3d& T_camera_lidar,
+                           const RefineOptions& options,
+                           const Linearisation& linear,
+                           const Matrix6d& curvature_inverse) {
+  const std::vector<BoardSample> moved = WithRangeOffset(samples, options.range_offset_m);
+  std::vector<const BoardSample*> pointers;
+  for (const BoardSample& sample : moved) pointers.push_back(&sample);
+  const auto terms = MakeRefineTerms(pointers, camera, T_camera_lidar, options);
+  const Linearisation there = LineariseAtStart(terms, samples.size(), options.huber_px);
+  Vector6d pull = Vector6d::Zero();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const PoseResiduals& pose = linear.poses[i];
+    pull -=
+        pose.J.transpose() * pose.sqrt_weights.cwiseAbs2().cwiseProduct(there.poses[i].r - pose.r);
+  }
+  return curvature_inverse * pull;
+}
+
+// The variance of Student's t over the normal's: the residuals measure their own scale, and each
+// pose has two that count, its centre's. Nothing if they are too few to.
+std::optional<double> FewPosesFactor(std::size_t num_poses) {
+  const double freedom = 2.0 * static_cast<double>(num_poses) - 6.0;
+  if (freedom <= 2.0) return std::nullopt;
+  return freedom / (freedom - 2.0);
+}
+
 double CentreRmsPx(const std::vector<const BoardSample*>& samples,
                    const CameraModel& camera,
                    const Eigen::Isometry3d& T_camera_lidar) {
@@ -185,6 +230,7 @@ std::vector<std::string> RefineOptions::Problems() const {
   problems.RequirePositive("centre_weight", centre_weight);
   problems.Require(corner_weight >= 0.0, "corner_weight must not be negative", corner_weight);
   problems.RequirePositive("huber_px", huber_px);
+  problems.Require(range_offset_m >= 0.0, "range_offset_m must not be negative", range_offset_m);
   problems.RequirePositive("max_iterations", max_iterations);
   return problems.lines();
 }
@@ -229,9 +275,12 @@ RefinedExtrinsic RefineExtrinsic(const std::vector<const BoardSample*>& samples,
     refined.status = RefineStatus::kDegenerate;
     return refined;
   }
-  const Eigen::Index num_residuals =
-      static_cast<Eigen::Index>(samples.size()) * linear.poses.front().r.size();
-  if (num_residuals > 6) refined.covariance = PooledSandwich(linear, curvature_inverse);
+  if (const std::optional<double> factor = FewPosesFactor(samples.size())) {
+    const Vector6d by_offset =
+        MoveByRangeOffset(samples, camera, T_camera_lidar, options, linear, curvature_inverse);
+    refined.covariance =
+        *factor * PooledSandwich(linear, curvature_inverse) + by_offset * by_offset.transpose();
+  }
   refined.status = RefineStatus::kConverged;
   return refined;
 }

@@ -20,6 +20,8 @@ struct RefineOptions {
   double centre_weight = 1.0;   ///< Weight of the centre's squared reprojection error; positive.
   double corner_weight = 0.05;  ///< Weight of each outline corner's; 0 leaves them out.
   double huber_px = 3.0;        ///< Residuals beyond this count linearly.
+  /// 1 sigma of an offset common to all ranges, which the residuals do not show.
+  double range_offset_m = 0.03;
   int max_iterations = 100;
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
@@ -45,8 +47,8 @@ struct RefinedExtrinsic {
 /// kDegenerate: fewer than three samples, or parameters that the poses leave open. kNotConverged: a
 /// point of a board out of the camera's sight at the start or the end, or out of iterations; the
 /// transform is then the start. The covariance is measured by the residuals themselves, correlated
-/// within a pose: what is alike in all poses (a range offset, say) does not show in it. With no
-/// more residuals than parameters it is NaN.
+/// within a pose; wider the fewer they are; and holds what a common range offset would move, which
+/// they do not show. With hardly more centres than parameters (four poses or fewer) it is NaN.
 /// @throws std::invalid_argument if `options` has Problems().
 RefinedExtrinsic RefineExtrinsic(const std::vector<const BoardSample*>& samples,
                                  const CameraModel& camera,

@@ -31,7 +31,7 @@ BestExtrinsic Best(const std::vector<const BoardSample*>& samples,
                    const std::optional<RefineMethod>& method = {}) {
   RefinerOptions options;
   options.method = method;
-  return RefineBest(samples, test::TestCamera(), RoughAverage(), options);
+  return RefineBest(samples, test::TestCamera(), RoughAverage(), {}, options);
 }
 
 test::SyntheticSamplesOptions NoisyScene(int num_samples) {
@@ -44,37 +44,43 @@ test::SyntheticSamplesOptions NoisyScene(int num_samples) {
 
 const test::LidarFaults kFaults = {0.02, 0.015, 0.008, 0.01};
 
-TEST(RefineBest, TakesTheLikelihoodWhereTheLidarHasFaults) {
+TEST(RefineBest, IsJointAndNearlyTheLikelihoodWhereItsModelIsRight) {
   const auto samples = test::SamplesWithSweeps(NoisyScene(20), kFaults);
   const BestExtrinsic best = Best(test::Pointers(samples));
   ASSERT_TRUE(best.IsUsable()) << best.problem;
-  EXPECT_EQ(best.method, RefineMethod::kLikelihood);
+  EXPECT_EQ(best.method, RefineMethod::kJoint);
   EXPECT_TRUE(best.Bias().common.is_observable);
-  EXPECT_EQ(best.covariance, best.likelihood.uncertainty.covariance);
-  ASSERT_THAT(best.trials, SizeIs(3));
-  for (const MethodTrial& trial : best.trials) {
-    EXPECT_GE(trial.ErrorMm(), best.trials[2].ErrorMm()) << ToString(trial.method);
-  }
+  EXPECT_EQ(best.scene_note, "no scene was kept with the samples");
+  ASSERT_THAT(best.trials, SizeIs(4));
+  const MethodTrial& joint = best.trials[3];
+  EXPECT_LT(joint.ErrorMm(), best.trials[0].ErrorMm());
+  EXPECT_LT(joint.ErrorMm(), best.trials[1].ErrorMm());
+  EXPECT_LT(joint.ErrorMm(), 1.1 * best.trials[2].ErrorMm());
 }
 
-TEST(RefineBest, RefinesByReprojectionWithoutPoints) {
+TEST(RefineBest, IsTheReprojectionsWithoutPointsAndScenes) {
   const auto samples = test::SynthesizeSamples(NoisyScene(20));
   const BestExtrinsic best = Best(test::Pointers(samples));
-  EXPECT_EQ(best.method, RefineMethod::kReprojection);
+  EXPECT_EQ(best.method, RefineMethod::kJoint);
+  const BestExtrinsic reprojection = Best(test::Pointers(samples), RefineMethod::kReprojection);
+  EXPECT_EQ(best.T_camera_lidar.matrix(), reprojection.T_camera_lidar.matrix());
+  EXPECT_EQ(best.covariance, reprojection.covariance);
   EXPECT_EQ(best.trials[2].problem, "most samples have no points of the board");
   EXPECT_FALSE(best.Bias().IsObservable());
 }
 
-TEST(RefineBest, KeepsTheAverageThatNoMethodBetters) {
-  const auto samples = test::SynthesizeSamples(NoisyScene(6));
+TEST(RefineBest, KeepsTheAverageWherePosesAreTooFewToTellHowWellTheyHoldIt) {
+  const auto samples = test::SynthesizeSamples(NoisyScene(4));
   AveragedExtrinsic truth = RoughAverage();
   truth.T_camera_lidar = test::TestExtrinsic();
-  // Six noisy poses hold a worse extrinsic than the truth.
   const BestExtrinsic best =
-      RefineBest(test::Pointers(samples), test::TestCamera(), truth, RefinerOptions{});
+      RefineBest(test::Pointers(samples), test::TestCamera(), truth, {}, RefinerOptions{});
+  EXPECT_EQ(best.trials[3].problem, "too few poses to tell how well they hold it");
   EXPECT_EQ(best.method, RefineMethod::kAverage);
   EXPECT_EQ(best.T_camera_lidar.matrix(), test::TestExtrinsic().matrix());
-  EXPECT_EQ(best.covariance(3, 3), 0.004 * 0.004);
+  // The spread, and the lidar's common offset along the view.
+  EXPECT_GT(best.covariance(5, 5), 0.02 * 0.02);
+  EXPECT_LT(best.covariance(3, 3), best.covariance(5, 5));
 }
 
 // Boards behind the camera have no error in the image, and then neither has the mean over all.
@@ -163,7 +169,8 @@ TEST(RefinerOptions, NamesProblemsOfItsParts) {
   options.reprojection.huber_px = 0.0;
   options.likelihood.ring_prior_m = 0.0;
   EXPECT_THAT(options.Problems(), SizeIs(2));
-  EXPECT_THROW(RefineBest({}, test::TestCamera(), RoughAverage(), options), std::invalid_argument);
+  EXPECT_THROW(RefineBest({}, test::TestCamera(), RoughAverage(), {}, options),
+               std::invalid_argument);
 }
 
 TEST(RefineMethodFromString, TakesWhatToStringGives) {

@@ -45,7 +45,7 @@ TEST(Calibrate, IsItsSteps) {
   const ChosenSets sets = ChooseSets(chosen, kTask);
   const AveragedSets averaged = AverageSets(chosen.Used(), sets.sets, kTask);
   const BestExtrinsic refined =
-      RefineBest(chosen.Used(), kTask.camera, averaged.average, kTask.options.refinement);
+      RefineBest(chosen.Used(), kTask.camera, averaged.average, {}, kTask.options.refinement);
   EXPECT_EQ(outcome.calibration.T_camera_lidar.matrix(), refined.T_camera_lidar.matrix());
   EXPECT_EQ(outcome.averaged.average.T_camera_lidar.matrix(),
             averaged.average.T_camera_lidar.matrix());

@@ -125,6 +125,8 @@ TEST(RefineExtrinsic, CovarianceIsTheSpreadOfManyTrials) {
   // near and far: 30 % too small to 60 % too large is what a claimed deviation is worth with 8 or
   // 15 poses.
   constexpr int kTrials = 200;
+  RefineOptions options;
+  options.range_offset_m = 0.0;  // these have none
   for (const int num_samples : {8, 15, 30}) {
     Matrix6d spread = Matrix6d::Zero();
     Matrix6d claimed = Matrix6d::Zero();
@@ -140,7 +142,7 @@ TEST(RefineExtrinsic, CovarianceIsTheSpreadOfManyTrials) {
             test::TestExtrinsic().inverse() * TransformFromPose(sample.camera.pose);
         sample.lidar.pose = PoseFromTransform(PerturbLeft(T_lidar_board, noise), test::TestBoard());
       }
-      const RefinedExtrinsic refined = Refine(samples);
+      const RefinedExtrinsic refined = Refine(samples, options);
       ASSERT_TRUE(refined.IsUsable());
       const Vector6d error = DifferenceLeft(test::TestExtrinsic(), refined.T_camera_lidar);
       spread += error * error.transpose() / kTrials;
@@ -151,6 +153,28 @@ TEST(RefineExtrinsic, CovarianceIsTheSpreadOfManyTrials) {
       EXPECT_GT(ratio, num_samples < 30 ? 0.7 : 0.85) << num_samples << " samples, parameter " << i;
       EXPECT_LT(ratio, num_samples < 30 ? 1.6 : 1.15) << num_samples << " samples, parameter " << i;
     }
+  }
+}
+
+// The residuals do not show it: the covariance has it from the prior, as the move that a refinement
+// over longer ranges makes.
+TEST(RefineExtrinsic, CovarianceHoldsTheMoveByARangeOffset) {
+  const auto samples = test::SynthesizeSamples(Noisy(1.0));
+  RefineOptions without;
+  without.range_offset_m = 0.0;
+  const Matrix6d added = Refine(samples).covariance - Refine(samples, without).covariance;
+  auto longer = samples;
+  for (BoardSample& sample : longer) {
+    BoardPose& pose = sample.lidar.pose;
+    pose.centre_m += 0.03 * pose.centre_m.normalized();
+    for (Eigen::Vector3d& corner_m : pose.corners_m) corner_m += 0.03 * corner_m.normalized();
+  }
+  const Vector6d move =
+      DifferenceLeft(Refine(samples).T_camera_lidar, Refine(longer).T_camera_lidar);
+  for (int i = 0; i < 6; ++i) {
+    // Linear, at the minimum: a tenth of the largest in the same unit.
+    const double scale = i < 3 ? move.head<3>().norm() : move.tail<3>().norm();
+    EXPECT_NEAR(std::sqrt(added(i, i)), std::abs(move[i]), 0.1 * scale) << i;
   }
 }
 

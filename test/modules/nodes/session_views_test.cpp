@@ -1,4 +1,4 @@
-#include "assessor/session_views.hpp"
+#include "messaging/session_views.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,7 +33,8 @@ class SessionViewsTest : public ::testing::Test {
   Rig rig_ = test::TestRig();
   test::TemporaryFolder folder_;
   std::vector<BoardSample> samples_ = test::SynthesizeSamples({});
-  SessionViews views_{rig_, folder_.path() / kSamplesLogName};
+  SessionViews views_{
+      rig_.board, rig_.camera, rig_.scene_check.view, folder_.path() / kSamplesLogName};
 };
 
 TEST_F(SessionViewsTest, HasNoneWithoutALog) { EXPECT_THAT(Of({&samples_[0]}), IsEmpty()); }

@@ -6,10 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/assessment/scene_view.hpp"
 #include "core/board/board_sample.hpp"
+#include "core/board/board_spec.hpp"
+#include "core/calibration/calibrate.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/scene/scene_view.hpp"
 #include "messaging/session_scenes.hpp"
-#include "rig/rig.hpp"
 
 namespace voqcal {
 
@@ -17,7 +19,10 @@ namespace voqcal {
 /// in memory at a time, each worked on once.
 class SessionViews {
  public:
-  SessionViews(const Rig& rig, const std::filesystem::path& samples_log);
+  SessionViews(const BoardSpec& board,
+               const CameraModel& camera,
+               const SceneViewOptions& options,
+               const std::filesystem::path& samples_log);
 
   /// Of the samples that have a scene, in order. A log that is not there (the sample collector runs
   /// on another machine) has none; a scene that cannot be read is left out with a warning.
@@ -30,9 +35,17 @@ class SessionViews {
   void ReadNew(const std::map<Key, const BoardSample*>& samples);
   void Add(const SessionScene& scene, const Key& key, const BoardSample& sample);
 
-  Rig rig_;
+  BoardSpec board_;
+  CameraModel camera_;
+  SceneViewOptions options_;
   std::filesystem::path samples_log_;
   std::map<Key, SceneView> views_;
 };
+
+/// SessionViews::Of, of one SessionViews that all copies of the function share.
+SceneViewsOf ViewsOfSession(const BoardSpec& board,
+                            const CameraModel& camera,
+                            const SceneViewOptions& options,
+                            const std::filesystem::path& samples_log);
 
 }  // namespace voqcal

@@ -1,4 +1,4 @@
-#include "core/assessment/scene_check.hpp"
+#include "core/scene/scene_check.hpp"
 
 #include <memory>
 
@@ -127,7 +127,7 @@ TEST_F(CheckSceneTest, DoesNotJudgeWithoutScenesOrEdges) {
   EXPECT_EQ(none.verdict, SceneVerdict::kNotJudged);
   EXPECT_THAT(none.reason, HasSubstr("no scene"));
   std::vector<SceneView> empty = *views_;
-  for (SceneView& view : empty) view.edges_lidar_m.clear();
+  for (SceneView& view : empty) view.edges.clear();
   const SceneCheck no_edges =
       CheckScene(empty, Camera(), test::TestExtrinsic(), test::TestExtrinsic(), {});
   EXPECT_EQ(no_edges.verdict, SceneVerdict::kNotJudged);
@@ -168,9 +168,9 @@ TEST(MakeSceneView, TakesTheNearerSideOfAJumpHalfWayToTheNextRay) {
   const CameraModel camera = test::SmallCamera(LensModel::kEquidistant);
   const cv::Mat image(camera.height_px, camera.width_px, CV_8U, cv::Scalar(90));
   const SceneView view = MakeSceneView(cloud, image, sample, test::TestBoard(), camera, {});
-  ASSERT_THAT(view.edges_lidar_m, SizeIs(1));
-  EXPECT_NEAR(view.edges_lidar_m[0].norm(), 2.0, 1e-5);
-  EXPECT_NEAR(std::atan2(view.edges_lidar_m[0].y(), view.edges_lidar_m[0].x()), 0.102, 1e-5);
+  ASSERT_THAT(view.edges, SizeIs(1));
+  EXPECT_NEAR(view.edges[0].position_lidar_m.norm(), 2.0, 1e-5);
+  EXPECT_NEAR(std::atan2(view.edges[0].position_lidar_m.y(), view.edges[0].position_lidar_m.x()), 0.102, 1e-5);
 }
 
 TEST(MakeSceneView, LeavesTheBoardOut) {
@@ -195,7 +195,7 @@ TEST(MakeSceneView, LeavesTheBoardOut) {
   const CameraModel camera = test::SmallCamera(LensModel::kEquidistant);
   cv::Mat image(camera.height_px, camera.width_px, CV_8U, cv::Scalar(90));
   const SceneView view = MakeSceneView(cloud, image, sample, board, camera, {});
-  EXPECT_THAT(view.edges_lidar_m, ::testing::IsEmpty());
+  EXPECT_THAT(view.edges, ::testing::IsEmpty());
   EXPECT_EQ(view.edge_rank.at<uchar>(197, 322), 0);  // the board hides the background here
   EXPECT_NE(view.edge_rank.at<uchar>(5, 5), 0);
 }

@@ -1,7 +1,8 @@
-#include "assessor/session_views.hpp"
+#include "messaging/session_views.hpp"
 
 #include <exception>
 #include <iterator>
+#include <memory>
 #include <optional>
 
 #include <spdlog/spdlog.h>
@@ -11,8 +12,11 @@
 
 namespace voqcal {
 
-SessionViews::SessionViews(const Rig& rig, const std::filesystem::path& samples_log)
-    : rig_(rig), samples_log_(samples_log) {}
+SessionViews::SessionViews(const BoardSpec& board,
+                           const CameraModel& camera,
+                           const SceneViewOptions& options,
+                           const std::filesystem::path& samples_log)
+    : board_(board), camera_(camera), options_(options), samples_log_(samples_log) {}
 
 std::vector<SceneView> SessionViews::Of(const std::vector<const BoardSample*>& samples) {
   std::map<Key, const BoardSample*> wanted;
@@ -41,18 +45,22 @@ void SessionViews::ReadNew(const std::map<Key, const BoardSample*>& samples) {
 
 void SessionViews::Add(const SessionScene& scene, const Key& key, const BoardSample& sample) {
   try {
-    views_[key] = MakeSceneView(FromMessage(scene.sweep),
-                                FromMessage(scene.image),
-                                sample,
-                                rig_.board,
-                                rig_.camera,
-                                rig_.scene_check.view);
+    views_[key] = MakeSceneView(
+        FromMessage(scene.sweep), FromMessage(scene.image), sample, board_, camera_, options_);
   } catch (const std::exception& error) {
     spdlog::warn("{}: the scene of sample {} is left out: {}",
                  samples_log_.string(),
                  scene.sample_id,
                  error.what());
   }
+}
+
+SceneViewsOf ViewsOfSession(const BoardSpec& board,
+                            const CameraModel& camera,
+                            const SceneViewOptions& options,
+                            const std::filesystem::path& samples_log) {
+  const auto views = std::make_shared<SessionViews>(board, camera, options, samples_log);
+  return [views](const std::vector<const BoardSample*>& samples) { return views->Of(samples); };
 }
 
 }  // namespace voqcal

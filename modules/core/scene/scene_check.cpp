@@ -1,4 +1,4 @@
-#include "core/assessment/scene_check.hpp"
+#include "core/scene/scene_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -61,8 +61,8 @@ std::vector<Edge> EdgesInView(const std::vector<SceneView>& views,
                               const Eigen::Isometry3d& T_camera_lidar) {
   std::vector<Edge> edges;
   for (const SceneView& view : views) {
-    for (const Eigen::Vector3f& position : view.edges_lidar_m) {
-      const Edge edge = {position.cast<double>(), &view, 0};
+    for (const DepthEdge& seen : view.edges) {
+      const Edge edge = {seen.position_lidar_m.cast<double>(), &view, 0};
       if (RankOf(edge, camera, T_camera_lidar) >= 0) edges.push_back(edge);
     }
   }

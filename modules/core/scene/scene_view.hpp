@@ -9,15 +9,14 @@
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/lidar/point_cloud.hpp"
+#include "core/scene/depth_edges.hpp"
 
 namespace voqcal {
 
 /// How depth edges and image edges are taken from what the sensors saw.
 struct SceneViewOptions {
-  double min_jump_m = 0.3;       ///< A depth edge: the next return is so much farther.
-  double max_step_rad = 0.02;    ///< Neighbours of a scan line are at most this far apart.
+  DepthEdgeOptions edges;
   double board_margin_m = 0.2;   ///< Around the board nothing is taken for background.
-  double min_range_m = 0.5;      ///< Nearer returns are the vehicle's own.
   int max_image_width_px = 960;  ///< Larger images are halved until they fit.
   double image_blur_px = 1.0;    ///< 1 sigma, of the reduced image, before its gradient.
 
@@ -27,9 +26,7 @@ struct SceneViewOptions {
 
 /// The edges of one scene's background in both sensors; small enough to keep those of a session.
 struct SceneView {
-  /// On the nearer side of a jump of range between two neighbours of a scan line, half-way between
-  /// the two rays: the true edge lies between the last hit and the first miss.
-  std::vector<Eigen::Vector3f> edges_lidar_m;
+  std::vector<DepthEdge> edges;
   /// Of the reduced image, CV_8U: 0 where the board hides the background, else 1 + 254 times the
   /// share of the image's background whose gradient is weaker.
   cv::Mat edge_rank;
@@ -44,6 +41,12 @@ SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
                         const cv::Mat& image,
                         const BoardSample& sample,
                         const BoardSpec& board,
+                        const CameraModel& camera,
+                        const SceneViewOptions& options);
+
+/// The same of a scene without a board, or with one that need not be left out.
+SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
+                        const cv::Mat& image,
                         const CameraModel& camera,
                         const SceneViewOptions& options);
 

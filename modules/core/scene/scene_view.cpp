@@ -1,9 +1,9 @@
-#include "core/assessment/scene_view.hpp"
+#include "core/scene/scene_view.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -14,85 +14,22 @@
 namespace voqcal {
 namespace {
 
-// Returns without a ring are put on scan lines by elevation. Half the spacing of the densest
-// spinning lidars, and well above the jitter of one beam.
-constexpr double kLineHeightRad = 0.1 * M_PI / 180.0;
-
-struct Return {
-  double azimuth_rad;
-  float range_m;
-  Eigen::Vector3f position_m;
-};
-
-using ScanLine = std::vector<Return>;
-
-// In order of azimuth.
-std::map<int, ScanLine> ScanLines(const PointCloud& cloud, double min_range_m) {
-  std::map<int, ScanLine> lines;
-  for (const LidarPoint& point : cloud.points) {
-    const Eigen::Vector3f& p = point.position_m;
-    const float range_m = p.norm();
-    if (!std::isfinite(range_m) || range_m < min_range_m) continue;
-    const double elevation_rad = std::asin(p.z() / range_m);
-    const int line =
-        cloud.has_ring ? point.ring : static_cast<int>(std::floor(elevation_rad / kLineHeightRad));
-    lines[line].push_back({std::atan2(p.y(), p.x()), range_m, p});
-  }
-  for (auto& [_, line] : lines) {
-    std::sort(line.begin(), line.end(), [](const Return& a, const Return& b) {
-      return a.azimuth_rad != b.azimuth_rad ? a.azimuth_rad < b.azimuth_rad : a.range_m < b.range_m;
-    });
-  }
-  return lines;
-}
-
-// The nearer surface must go on behind its last return by a step that is small against the jump: a
-// beam split between two surfaces answers from in between, and lies on none.
-bool IsEdge(const Return& before, const Return& last, const Return& next, double min_jump_m) {
-  const double jump_m = next.range_m - last.range_m;
-  return jump_m > min_jump_m && std::abs(last.range_m - before.range_m) < 0.2 * jump_m;
-}
-
-Eigen::Vector3f EdgeBetween(const Return& last, const Return& next) {
-  const Eigen::Vector3f half_way = last.position_m / last.range_m + next.position_m / next.range_m;
-  return last.range_m * half_way.normalized();
-}
-
-std::vector<Eigen::Vector3f> DepthEdges(const PointCloud& cloud, const SceneViewOptions& options) {
-  std::vector<Eigen::Vector3f> edges;
-  for (const auto& [_, line] : ScanLines(cloud, options.min_range_m)) {
-    const auto is_near = [&options](const Return& a, const Return& b) {
-      return std::abs(a.azimuth_rad - b.azimuth_rad) < options.max_step_rad;
-    };
-    for (std::size_t i = 1; i + 1 < line.size(); ++i) {
-      const Return& left = line[i - 1];
-      const Return& here = line[i];
-      const Return& right = line[i + 1];
-      if (!is_near(left, here) || !is_near(here, right)) continue;
-      if (IsEdge(left, here, right, options.min_jump_m)) {
-        edges.push_back(EdgeBetween(here, right));
-      } else if (IsEdge(right, here, left, options.min_jump_m)) {
-        edges.push_back(EdgeBetween(here, left));
-      }
-    }
-  }
-  return edges;
-}
-
 bool IsAtBoard(const Eigen::Vector3d& point_board_m, const BoardSpec& board, double margin_m) {
   return std::abs(point_board_m.x()) < board.width_m / 2 + margin_m &&
          std::abs(point_board_m.y()) < board.height_m / 2 + margin_m &&
          std::abs(point_board_m.z()) < margin_m;
 }
 
-std::vector<Eigen::Vector3f> WithoutBoard(const std::vector<Eigen::Vector3f>& points_lidar_m,
-                                          const BoardPose& pose_lidar,
-                                          const BoardSpec& board,
-                                          double margin_m) {
+std::vector<DepthEdge> WithoutBoard(const std::vector<DepthEdge>& edges,
+                                    const BoardPose& pose_lidar,
+                                    const BoardSpec& board,
+                                    double margin_m) {
   const Eigen::Isometry3d T_board_lidar = TransformFromPose(pose_lidar).inverse();
-  std::vector<Eigen::Vector3f> others;
-  for (const Eigen::Vector3f& point : points_lidar_m) {
-    if (!IsAtBoard(T_board_lidar * point.cast<double>(), board, margin_m)) others.push_back(point);
+  std::vector<DepthEdge> others;
+  for (const DepthEdge& edge : edges) {
+    if (!IsAtBoard(T_board_lidar * edge.position_lidar_m.cast<double>(), board, margin_m)) {
+      others.push_back(edge);
+    }
   }
   return others;
 }
@@ -180,14 +117,35 @@ cv::Mat RankOf(const cv::Mat& magnitude, const cv::Mat& mask) {
   return rank;
 }
 
+// The mask in the reduced image, of its size and reduction.
+using MakeMask = std::function<cv::Mat(const cv::Size& size, double reduction)>;
+
+SceneView ViewOf(const std::vector<DepthEdge>& edges,
+                 const cv::Mat& image,
+                 const CameraModel& camera,
+                 const SceneViewOptions& options,
+                 const MakeMask& make_mask) {
+  RequireUsable("SceneViewOptions", options.Problems());
+  if (image.cols != camera.width_px || image.rows != camera.height_px || image.depth() != CV_8U) {
+    throw std::invalid_argument("MakeSceneView: the image is not of the camera's size");
+  }
+  SceneView view;
+  view.edges = edges;
+  const cv::Mat gray = ReducedGray(image, options.max_image_width_px);
+  view.reduction = static_cast<double>(image.cols) / gray.cols;
+  view.edge_rank = RankOf(GradientMagnitude(gray, options.image_blur_px),
+                          make_mask(gray.size(), view.reduction));
+  return view;
+}
+
 }  // namespace
 
 std::vector<std::string> SceneViewOptions::Problems() const {
   ProblemList problems;
-  problems.RequirePositive("min_jump_m", min_jump_m);
-  problems.RequirePositive("max_step_rad", max_step_rad);
+  problems.RequirePositive("min_jump_m", edges.min_jump_m);
+  problems.RequirePositive("max_step_rad", edges.max_step_rad);
   problems.Require(board_margin_m >= 0, "board_margin_m must not be negative", board_margin_m);
-  problems.Require(min_range_m >= 0, "min_range_m must not be negative", min_range_m);
+  problems.Require(edges.min_range_m >= 0, "min_range_m must not be negative", edges.min_range_m);
   problems.Require(
       max_image_width_px >= 16, "max_image_width_px must be at least 16", max_image_width_px);
   problems.RequirePositive("image_blur_px", image_blur_px);
@@ -200,19 +158,24 @@ SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
                         const BoardSpec& board,
                         const CameraModel& camera,
                         const SceneViewOptions& options) {
-  RequireUsable("SceneViewOptions", options.Problems());
-  if (image.cols != camera.width_px || image.rows != camera.height_px || image.depth() != CV_8U) {
-    throw std::invalid_argument("MakeSceneView: the image is not of the camera's size");
-  }
-  SceneView view;
-  view.edges_lidar_m = WithoutBoard(
-      DepthEdges(cloud_lidar_m, options), sample.lidar.pose, board, options.board_margin_m);
-  const cv::Mat gray = ReducedGray(image, options.max_image_width_px);
-  view.reduction = static_cast<double>(image.cols) / gray.cols;
-  const cv::Mat mask = BackgroundMask(
-      gray.size(), view.reduction, sample.camera.pose, board, camera, options.board_margin_m);
-  view.edge_rank = RankOf(GradientMagnitude(gray, options.image_blur_px), mask);
-  return view;
+  const auto edges = WithoutBoard(FindDepthEdges(cloud_lidar_m, options.edges),
+                                  sample.lidar.pose,
+                                  board,
+                                  options.board_margin_m);
+  return ViewOf(edges, image, camera, options, [&](const cv::Size& size, double reduction) {
+    return BackgroundMask(
+        size, reduction, sample.camera.pose, board, camera, options.board_margin_m);
+  });
+}
+
+SceneView MakeSceneView(const PointCloud& cloud_lidar_m,
+                        const cv::Mat& image,
+                        const CameraModel& camera,
+                        const SceneViewOptions& options) {
+  const auto edges = FindDepthEdges(cloud_lidar_m, options.edges);
+  return ViewOf(edges, image, camera, options, [](const cv::Size& size, double) {
+    return cv::Mat(size, CV_8U, cv::Scalar(1));
+  });
 }
 
 }  // namespace voqcal

@@ -6,9 +6,9 @@
 
 #include <Eigen/Geometry>
 
-#include "core/assessment/scene_view.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/scene/scene_view.hpp"
 
 namespace voqcal {
 

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <thread>
+#include <vector>
+
+namespace voqcal {
+
+/// Calls `work(i)` for each i below `num`, on as many threads as the machine has cores. What each
+/// call gives must depend on i alone and be stored by i: the result is then the same each time.
+/// @throws what the first call (by i) that throws does, after all have ended.
+template <typename Work>
+void ParallelFor(std::size_t num, const Work& work) {
+  std::vector<std::exception_ptr> errors(num);
+  std::atomic<std::size_t> next{0};
+  const auto take_turns = [&] {
+    for (std::size_t i = next++; i < num; i = next++) {
+      try {
+        work(i);
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+    }
+  };
+  const std::size_t num_threads =
+      std::min<std::size_t>(num, std::max(1U, std::thread::hardware_concurrency()));
+  std::vector<std::thread> threads;
+  for (std::size_t i = 1; i < num_threads; ++i) threads.emplace_back(take_turns);
+  take_turns();
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
+}  // namespace voqcal

@@ -25,8 +25,11 @@ void RequestStop(int /*signal*/) { g_is_stop_requested = 1; }
 /// Republish and status whenever a second has passed.
 class Heartbeat {
  public:
-  Heartbeat(Bus& bus, Module& module, const std::string& channel)
-      : module_(module), status_(bus, channel) {}
+  Heartbeat(Bus& bus,
+            Module& module,
+            const std::string& channel,
+            const std::filesystem::path& session_dir)
+      : module_(module), status_(bus, channel, session_dir) {}
 
   void BeatIfDue() {
     const Clock::time_point now = Clock::now();
@@ -90,9 +93,12 @@ StopOnSignal::~StopOnSignal() {
 
 bool StopOnSignal::IsRequested() const { return g_is_stop_requested != 0; }
 
-void Spin(Bus& bus, Module& module, const std::string& status_channel) {
+void Spin(Bus& bus,
+          Module& module,
+          const std::string& status_channel,
+          const std::filesystem::path& session_dir) {
   const StopOnSignal stop;
-  Heartbeat heartbeat(bus, module, status_channel);
+  Heartbeat heartbeat(bus, module, status_channel, session_dir);
   try {
     RunUntilStopped(bus, module, stop, &heartbeat);
   } catch (const std::exception& error) {

@@ -1,13 +1,26 @@
 #include "messaging/status.hpp"
 
+#include <climits>
+#include <cstring>
 #include <utility>
+
+#include <unistd.h>
 
 #include "messaging/wall_clock.hpp"
 
 namespace voqcal {
 
-StatusPublisher::StatusPublisher(Bus& bus, std::string channel)
-    : bus_(bus), channel_(std::move(channel)) {}
+std::string SessionName(const std::filesystem::path& session_dir) {
+  char host[HOST_NAME_MAX + 1] = {};
+  if (gethostname(host, HOST_NAME_MAX) != 0) std::strcpy(host, "unknown");
+  if (session_dir.empty()) return std::string(host) + ":";
+  return std::string(host) + ":" + std::filesystem::weakly_canonical(session_dir).string();
+}
+
+StatusPublisher::StatusPublisher(Bus& bus,
+                                 std::string channel,
+                                 const std::filesystem::path& session_dir)
+    : bus_(bus), channel_(std::move(channel)), session_(SessionName(session_dir)) {}
 
 void StatusPublisher::Publish(const Module& module,
                               const std::string& state,
@@ -16,6 +29,7 @@ void StatusPublisher::Publish(const Module& module,
   message.utime = WallClockUs();
   message.seq = ++num_sent_;
   message.module = module.Name();
+  message.session = session_;
   message.state = state;
   for (const auto& [name, counts] : bus_.channels()) {
     channel_status_t channel{};

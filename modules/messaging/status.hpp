@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
 
@@ -11,6 +12,10 @@
 
 namespace voqcal {
 
+/// "host:folder": tells one session from another on one network, also of another host. Without a
+/// folder "host:".
+std::string SessionName(const std::filesystem::path& session_dir);
+
 /// Sends one module's MODULE_STATUS; remembers what numbering and rates need. Spin uses it; a
 /// process with a loop of its own uses it alone.
 class StatusPublisher {
@@ -18,7 +23,8 @@ class StatusPublisher {
   using Clock = std::chrono::steady_clock;
 
   /// Borrows `bus`, which must outlive it.
-  StatusPublisher(Bus& bus, std::string channel);
+  /// @param session_dir  of the session that the module serves; empty: of none.
+  StatusPublisher(Bus& bus, std::string channel, const std::filesystem::path& session_dir = {});
 
   /// @param state  usually module.State(); "failed: ..." when it can do no more.
   /// @param now    rates are counted from the previous call's `now` to this one; 0 in the first.
@@ -31,6 +37,7 @@ class StatusPublisher {
 
   Bus& bus_;
   std::string channel_;
+  std::string session_;
   std::int64_t num_sent_ = 0;
   Clock::time_point last_;
   std::map<std::string, std::int64_t> num_received_;  ///< At the previous call.

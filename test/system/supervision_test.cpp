@@ -64,6 +64,44 @@ TEST_F(Supervision, UpRunsTheModulesUntilDown) {
   EXPECT_EQ(Down().status, 1);  // nothing is left to stop
 }
 
+TEST_F(Supervision, ASecondSessionOnTheNetworkIsRefused) {
+  ASSERT_EQ(Up({"--only", "voq_selector"}).status, 0);
+  const auto other = [this](const std::string& modules) {
+    return test::Run(
+        {test::Tool("up"), rig_, "--session", folder_.path() / "other", "--only", modules});
+  };
+  const test::Outcome refused = other("voq_selector,assessor");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr("voq_selector of "), HasSubstr("a session runs on this network")));
+  EXPECT_THAT(test::NamesIn(folder_.path()), Not(::testing::Contains("other")));
+  // One session may run on two hosts, each with modules of its own.
+  EXPECT_EQ(other("assessor").status, 0);
+  test::Run({test::Tool("down"), "--session", folder_.path() / "other"});
+}
+
+TEST_F(Supervision, AFolderOfAnotherRigIsRefused) {
+  folder_.Write("a session/rig.yaml", "rig: another\n");
+  folder_.Write("a session/samples.lcm", "samples");
+  const test::Outcome refused = Up({"--only", "voq_selector"});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("another rig file"), HasSubstr("< rig: another")));
+  EXPECT_EQ(ReadWholeFile(session_ + "/rig.yaml"), "rig: another\n");
+  ASSERT_EQ(Up({"--only", "voq_selector", "--new"}).status, 0);
+  EXPECT_EQ(ReadWholeFile(session_ + "-2/rig.yaml"), test::ShortRigText());
+  session_ += "-2";
+}
+
+TEST_F(Supervision, UpSaysThatADriverEndedAtOnce) {
+  const std::string vlp16 = test::Replaced(test::ShortRigText(),
+                                           "source: simulator               # default folder\n",
+                                           "source: vlp16\n");
+  rig_ = folder_.Write("rig.yaml", test::Replaced(vlp16, "pcap: \"\"", "pcap: no_such.pcap"));
+  const test::Outcome up = Up({"--only", "lidar_driver"});
+  EXPECT_EQ(up.status, 1) << up.out;
+  EXPECT_THAT(up.err, AllOf(HasSubstr("lidar_driver ended at once"), HasSubstr("no_such.pcap")));
+}
+
 TEST_F(Supervision, ADriverHasEndedOnlyInTheSessionThatRuns) {
   std::filesystem::create_directories(session_);
   const std::string end =

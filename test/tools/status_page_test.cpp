@@ -8,7 +8,9 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::ContainsRegex;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 using Health = StatusPage::Health;
 
@@ -47,6 +49,36 @@ void AddCounter(const std::string& name, std::int64_t count, module_status_t* st
   counter.count = count;
   status->counters.push_back(counter);
   status->num_counters = static_cast<std::int32_t>(status->counters.size());
+}
+
+module_status_t StatusOf(const std::string& session, std::int64_t seq) {
+  module_status_t status = Status("assessor", seq, "running");
+  status.session = session;
+  return status;
+}
+
+TEST(StatusPage, NamesTwoSessionsThatRunTheSameModule) {
+  StatusPage page({"assessor"});
+  page.Take(StatusOf("a:/one", 7), At(0));
+  EXPECT_THAT(page.Rivals(At(0)), IsEmpty());
+  EXPECT_THAT(page.Rivals(At(0), "a:/one"), IsEmpty());
+  EXPECT_THAT(page.Rivals(At(0), "b:/two"), ElementsAre("assessor of a:/one runs on this network"));
+  page.Take(StatusOf("b:/two", 2), At(1));
+  EXPECT_THAT(page.Rivals(At(1)),
+              ElementsAre("assessor of a:/one and of b:/two runs on this network"));
+  EXPECT_FALSE(page.IsAllGood(At(1)));
+  EXPECT_THAT(page.Text(At(1)), HasSubstr("\nTWO SESSIONS  assessor of a:/one and"));
+  EXPECT_THAT(page.Text(At(1)), Not(HasSubstr("restarted")));
+  page.Take(StatusOf("b:/two", 6), At(5));
+  EXPECT_TRUE(page.IsAllGood(At(5)));  // the first is gone
+}
+
+TEST(StatusPage, LossesAreNotGood) {
+  StatusPage page({"assessor"});
+  module_status_t status = Status("assessor", 1, "running");
+  AddChannel(Channel("CALIB_SAMPLES", 9, 1), &status);
+  page.Take(status, At(0));
+  EXPECT_FALSE(page.IsAllGood(At(0)));
 }
 
 TEST(StatusPage, NamesWhoWasNeverHeard) {

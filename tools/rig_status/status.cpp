@@ -1,5 +1,8 @@
 // status: what every module of a running rig says of itself, on one terminal page.
 
+#include "messaging/status.hpp"
+
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -25,8 +28,11 @@ struct StatusArgs {
   std::vector<std::string> modules = AllModuleNames();
   std::vector<std::string> ended;
   bool is_once = false;
+  std::optional<std::filesystem::path> alone_in;
 };
 
+/// A heartbeat of each module, with room to spare.
+constexpr std::chrono::milliseconds kProbeDuration{1500};
 /// Two heartbeats of each module: rates of sending need both.
 constexpr std::chrono::milliseconds kOnceDuration{2500};
 
@@ -48,6 +54,24 @@ void PrintOnce(const StatusArgs& args, Bus* bus, StatusPage* page) {
   }
 }
 
+/// Fails if another session runs any of the modules on this network.
+void RequireAlone(const StatusArgs& args, const std::string& url, Bus* bus, StatusPage* page) {
+  const Clock::time_point end = Clock::now() + kProbeDuration;
+  while (Clock::now() < end) bus->HandleOnce(std::chrono::milliseconds(100));
+  std::string problems;
+  for (const std::string& rival : page->Rivals(Clock::now(), SessionName(*args.alone_in))) {
+    const std::string module = rival.substr(0, rival.find(' '));
+    const auto& ours = args.modules;
+    if (std::find(ours.begin(), ours.end(), module) == ours.end()) continue;
+    problems += url + ": " + rival + '\n';
+  }
+  if (problems.empty()) return;
+  throw std::runtime_error(
+      problems +
+      "two sessions would mix their samples: stop the other one (tools/down), or give this rig "
+      "another port in lcm.url");
+}
+
 /// Until Ctrl-C.
 void PrintEachSecond(Bus* bus, StatusPage* page) {
   const StopOnSignal stop;
@@ -64,10 +88,13 @@ void PrintEachSecond(Bus* bus, StatusPage* page) {
 
 void ShowStatus(const StatusArgs& args) {
   const Rig rig = LoadRig(args.rig);
-  Bus bus(args.lcm_url.value_or(rig.lcm_url));
+  const std::string url = args.lcm_url.value_or(rig.lcm_url);
+  Bus bus(url);
   StatusPage page(args.modules, args.ended);
   Subscribe(rig.channels, &bus, &page);
-  if (args.is_once) {
+  if (args.alone_in) {
+    RequireAlone(args, url, &bus, &page);
+  } else if (args.is_once) {
     PrintOnce(args, &bus, &page);
   } else {
     PrintEachSecond(&bus, &page);
@@ -92,6 +119,11 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(voqcal::AllModuleNames()));
   app.add_flag("--once",
                args.is_once,
-               "Listen for 2.5 s, print one page; status 1 if a module is silent or has failed");
+               "Listen for 2.5 s, print one page; status 1 if a module is silent, has failed or is "
+               "run by two sessions, or if messages were lost");
+  app.add_option("--alone-in",
+                 args.alone_in,
+                 "Listen for 1.5 s, print nothing; status 1 and who it is if a session other than "
+                 "this folder's runs any of the modules");
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::ShowStatus(args); });
 }

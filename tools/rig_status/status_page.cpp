@@ -78,14 +78,18 @@ void StatusPage::Take(const module_status_t& status, Time now) {
   Heard heard{status, now};
   if (found != heard_.end()) {
     const Heard& before = found->second;
-    const bool is_restarted = status.seq <= before.status.seq;
+    const bool is_same = status.session == before.status.session;
+    const bool is_restarted = is_same && status.seq <= before.status.seq;
     heard.num_restarts = before.num_restarts + (is_restarted ? 1 : 0);
     const double elapsed_s = SecondsBetween(before.at, now);
-    if (!is_restarted && elapsed_s > 0) {
+    if (is_same && !is_restarted && elapsed_s > 0) {
       heard.published_hz =
           static_cast<double>(status.num_published - before.status.num_published) / elapsed_s;
     }
   }
+  if (found != heard_.end()) heard.sessions = found->second.sessions;
+  heard.sessions[status.session] = now;
+  if (HasEnded(status)) heard.sessions.erase(status.session);
   heard_[status.module] = std::move(heard);
 }
 
@@ -106,6 +110,7 @@ StatusPage::Health StatusPage::HealthOf(const std::string& module, Time now) con
 }
 
 bool StatusPage::IsAllGood(Time now) const {
+  if (!Rivals(now).empty() || !LostText().empty()) return false;
   return std::all_of(modules_.begin(), modules_.end(), [this, now](const std::string& module) {
     return HealthOf(module, now) == Health::kGood;
   });
@@ -120,7 +125,32 @@ std::string StatusPage::Text(Time now) const {
   }
   if (!events_.empty()) text += "last events\n";
   for (const event_t& event : events_) text += EventText(event);
-  return text + "silent  " + SilentText(now) + "\nlost    " + LostText() + '\n';
+  for (const std::string& rival : Rivals(now)) text += "TWO SESSIONS  " + rival + '\n';
+  const std::string lost = LostText();
+  return text + "silent  " + SilentText(now) + "\nlost    " + (lost.empty() ? "nothing" : lost) +
+         '\n';
+}
+
+std::vector<std::string> StatusPage::Rivals(Time now, const std::string& own) const {
+  std::vector<std::string> rivals;
+  for (const auto& [module, heard] : heard_) {
+    std::vector<std::string> sessions = SessionsOf(heard, now);
+    sessions.erase(std::remove(sessions.begin(), sessions.end(), own), sessions.end());
+    if (sessions.size() < (own.empty() ? 2U : 1U)) continue;
+    std::string names;
+    for (const std::string& session : sessions)
+      names += (names.empty() ? "" : " and of ") + session;
+    rivals.push_back(module + " of " + names + " runs on this network");
+  }
+  return rivals;
+}
+
+std::vector<std::string> StatusPage::SessionsOf(const Heard& heard, Time now) const {
+  std::vector<std::string> sessions;
+  for (const auto& [session, at] : heard.sessions) {
+    if (now - at <= kSilence) sessions.push_back(session);
+  }
+  return sessions;
 }
 
 std::string StatusPage::ModuleText(const std::string& module, Time now) const {
@@ -168,7 +198,7 @@ std::string StatusPage::LostText() const {
               channel.channel;
     }
   }
-  return text.empty() ? "nothing" : text;
+  return text;
 }
 
 }  // namespace voqcal

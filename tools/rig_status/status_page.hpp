@@ -34,8 +34,13 @@ class StatusPage {
   enum class Health { kGood, kSilent, kFailed };
   Health HealthOf(const std::string& module, Time now) const;
 
-  /// True if each module that should be heard is good.
+  /// True if each module that should be heard is good, none is sent by two sessions, and no message
+  /// was lost.
   bool IsAllGood(Time now) const;
+
+  /// A sentence for each module that sessions other than `own` run on this network; none: it is
+  /// free. With no `own`: for each module that more than one session runs.
+  std::vector<std::string> Rivals(Time now, const std::string& own = {}) const;
 
   /// A line or more for each module (state, rates, losses, most frequent results and misses), the
   /// last events, then one line each for who is silent and for what was lost.
@@ -45,13 +50,16 @@ class StatusPage {
   struct Heard {
     module_status_t status;
     Time at;
-    double published_hz = 0;  ///< Between the last two heartbeats.
-    int num_restarts = 0;     ///< Times that the numbering began anew.
+    double published_hz = 0;                 ///< Between the last two heartbeats.
+    int num_restarts = 0;                    ///< Times that the numbering began anew.
+    std::map<std::string, Time> sessions{};  ///< That send it, each with its last heartbeat.
   };
 
   std::string ModuleText(const std::string& module, Time now) const;
   std::string SilentText(Time now) const;
-  std::string LostText() const;
+  std::string LostText() const;  ///< Empty if nothing was.
+  /// The sessions that sent this module's heartbeat in the last three seconds.
+  std::vector<std::string> SessionsOf(const Heard& heard, Time now) const;
   bool IsKnownToHaveEnded(const std::string& module) const;
 
   std::vector<std::string> modules_;

@@ -26,15 +26,20 @@ std::optional<std::vector<std::uint8_t>> Joined(
 
 }  // namespace
 
+bool IpFragments::IsPiece(PacketBytes ip) {
+  // "More fragments", or an offset.
+  return ip.size >= kMinHeader && ip.data[0] >> 4 == 4 &&
+         ((ip.data[6] & 0x3F) != 0 || ip.data[7] != 0);
+}
+
 std::optional<std::vector<std::uint8_t>> IpFragments::Add(PacketBytes ip) {
-  if (ip.size < kMinHeader || ip.data[0] >> 4 != 4) return std::nullopt;
+  if (!IsPiece(ip)) return std::nullopt;
   const std::size_t header = std::size_t{4} * (ip.data[0] & 0x0F);
   const auto stated = static_cast<std::size_t>(ip.data[2] << 8 | ip.data[3]);
   if (header < kMinHeader || stated < header || stated > ip.size) return std::nullopt;
   const int flags_and_offset = ip.data[6] << 8 | ip.data[7];
   const bool has_more = (flags_and_offset & 0x2000) != 0;
   const auto offset = static_cast<std::size_t>(flags_and_offset & 0x1FFF) * 8;
-  if (!has_more && offset == 0) return std::nullopt;
   std::string name(ip.data + 12, ip.data + 20);
   name.append({static_cast<char>(ip.data[9]),
                static_cast<char>(ip.data[4]),

@@ -16,6 +16,9 @@ namespace voqcal {
 /// reader.
 class IpFragments {
  public:
+  /// True if it is a piece of a datagram.
+  static bool IsPiece(PacketBytes ip);
+
   /// @param ip  a frame's IPv4 packet.
   /// @return the datagram as one packet, when its last missing piece came.
   std::optional<std::vector<std::uint8_t>> Add(PacketBytes ip);

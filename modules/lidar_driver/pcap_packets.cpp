@@ -63,7 +63,7 @@ class PcapPackets : public PacketSource {
     const auto joined = ip ? fragments_.Add(*ip) : std::nullopt;
     if (joined) payload = FindUdpPayload(FrameLink::kIp, {joined->data(), joined->size()});
     if (!payload) {
-      ++counts_["frames without UDP"];
+      ++counts_[ip && IpFragments::IsPiece(*ip) ? "pieces of datagrams" : "frames without UDP"];
       return std::nullopt;
     }
     if (port_ != 0 && payload->port != port_) {

@@ -16,7 +16,7 @@ const command = {
   numPositional: 1,
   required: ["out"],
   options: { out: { type: "string" }, force: { type: "boolean", default: false } },
-  usage: `usage: tools/export_mcap RESULT --out FILE.mcap [--force]
+  usage: `usage: export_mcap RESULT --out FILE.mcap [--force]
   RESULT      the folder that calibrate wrote: result.json and samples.lcm
   --out FILE  MCAP with Foxglove's schemas (protobuf), for Foxglove and Rerun:
               /tf (camera in lidar), /lidar/points, /camera/image, /camera/calibration,

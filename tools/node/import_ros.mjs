@@ -32,7 +32,7 @@ const command = {
     "camera-info-channel": { type: "string", default: "CAMERA_INFO" },
     "print-camera": { type: "boolean", default: false },
   },
-  usage: `usage: tools/import_ros RECORDING... --out LOG [--force] [--lidar-topic NAME] [--image-topic NAME]
+  usage: `usage: import_ros RECORDING... --out LOG [--force] [--lidar-topic NAME] [--image-topic NAME]
   RECORDING                    ROS 1: .bag; ROS 2: .mcap, .db3, or the folder that ros2 bag made; also cut off, without
                                index, split (several files, or their folder), compressed by zstd
   --out LOG                    the LCM log to write; folders are made if missing
@@ -44,7 +44,7 @@ const command = {
                                unless they are of different clocks, and says so
   --lidar-channel, --image-channel, --camera-info-channel NAME
                                the rig's channels, where they are not LIDAR_POINTS, CAMERA_IMAGE, CAMERA_INFO
-or     tools/import_ros RECORDING... --print-camera [--camera-info-topic NAME] [--image-topic NAME]
+or     import_ros RECORDING... --print-camera [--camera-info-topic NAME] [--image-topic NAME]
   prints CameraInfo as the camera section of a rig file; for a topic of rectified images (image_rect...), of those`,
 };
 

@@ -26,7 +26,7 @@ TEST(FindField, KnowsUsualNamesInLettersOfEitherSize) {
 }
 
 TEST(SetRings, LooksOnlyWhereABeamReturned) {
-  for (const double elsewhere : {NAN, -1.0, 0.5, 1e9}) {
+  for (const double elsewhere : std::vector<double>{NAN, -1.0, 0.5, 1e9}) {
     PointCloud cloud = ThreePoints();
     SetRings({4, elsewhere, 65535}, &cloud);
     EXPECT_TRUE(cloud.has_ring);
@@ -37,7 +37,7 @@ TEST(SetRings, LooksOnlyWhereABeamReturned) {
 }
 
 TEST(SetRings, ThatAreNoneMakeACloudWithoutRings) {
-  for (const double bad : {NAN, -1.0, 0.5, 65536.0}) {
+  for (const double bad : std::vector<double>{NAN, -1.0, 0.5, 65536.0}) {
     PointCloud cloud = ThreePoints();
     SetRings({4, 5, bad}, &cloud);
     EXPECT_FALSE(cloud.has_ring);

@@ -18,7 +18,6 @@
 #include "files/atomic_file.hpp"
 #include "messaging/log.hpp"
 #include "report/write_report.hpp"
-#include "result/verdict_yaml.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {

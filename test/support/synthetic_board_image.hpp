@@ -18,7 +18,7 @@ class PrintedFace {
  public:
   explicit PrintedFace(const BoardSpec& board)
       : board_(board), first_corner_m_(board.InnerCornersBoardM().front().head<2>()) {
-    if (board.pattern == BoardPattern::kCharuco) charuco_ = DrawCharuco(board, kPixelsPerSquare);
+    if (board.pattern == "charuco") charuco_ = DrawCharuco(board, kPixelsPerSquare);
   }
 
   /// Nothing beyond the outline.
@@ -79,21 +79,23 @@ inline cv::Rect AreaOfBoard(const CameraModel& camera,
 }
 
 /// The board before a grey wall, rendered through the inverse of the lens model: each pixel is the
-/// mean of 4 x 4 rays. 8-bit, 1 channel. The square of a chessboard next to the corner (0, 0)
-/// towards -x, -y is black.
-inline cv::Mat RenderBoard(const CameraModel& camera,
-                           const BoardSpec& board,
-                           const Eigen::Isometry3d& T_camera_board) {
-  constexpr int kRaysAcross = 4;
+/// mean of `num_rays_across` squared rays. 8-bit, 1 channel.
+///
+/// @param brightness_at  of a point of the board's face, Eigen::Vector2d in metres; nothing beyond.
+template <typename BrightnessAt>
+cv::Mat RenderFace(const CameraModel& camera,
+                   const BoardSpec& board,
+                   const Eigen::Isometry3d& T_camera_board,
+                   int num_rays_across,
+                   const BrightnessAt& brightness_at) {
   constexpr double kWall = 110;
   const Eigen::Isometry3d T_board_camera = T_camera_board.inverse();
-  const PrintedFace face(board);
   const auto brightness = [&](const Eigen::Vector3d& ray_camera) {
     const Eigen::Vector3d ray = T_board_camera.linear() * ray_camera;
     const Eigen::Vector3d origin = T_board_camera.translation();
     if (!(ray.z() < 0)) return kWall;
     const Eigen::Vector3d hit = origin - ray * (origin.z() / ray.z());
-    return face.BrightnessAt(hit.head<2>()).value_or(kWall);
+    return brightness_at(hit.head<2>()).value_or(kWall);
   };
   // NaN where the lens has no ray: that is wall.
   const auto ray_of = [&](int x, int y) -> Eigen::Vector3d {
@@ -108,17 +110,28 @@ inline cv::Mat RenderBoard(const CameraModel& camera,
       const Eigen::Vector3d right = ray_of(x + 1, y);
       const Eigen::Vector3d below = ray_of(x, y + 1);
       double sum = 0;
-      for (int k = 0; k < kRaysAcross * kRaysAcross; ++k) {
-        const double dx = (k % kRaysAcross + 0.5) / kRaysAcross - 0.5;
-        const double dy = (k / kRaysAcross + 0.5) / kRaysAcross - 0.5;
+      for (int k = 0; k < num_rays_across * num_rays_across; ++k) {
+        const double dx = (k % num_rays_across + 0.5) / num_rays_across - 0.5;
+        const double dy = (k / num_rays_across + 0.5) / num_rays_across - 0.5;
         sum += brightness(ray + dx * (right - ray) + dy * (below - ray));
       }
       image.at<unsigned char>(y, x) =
-          cv::saturate_cast<unsigned char>(sum / (kRaysAcross * kRaysAcross));
+          cv::saturate_cast<unsigned char>(sum / (num_rays_across * num_rays_across));
       ray = right;
     }
   }
   return image;
+}
+
+/// The same of a printed chessboard or ChArUco board, by 4 x 4 rays. The square of a chessboard
+/// next to the corner (0, 0) towards -x, -y is black.
+inline cv::Mat RenderBoard(const CameraModel& camera,
+                           const BoardSpec& board,
+                           const Eigen::Isometry3d& T_camera_board) {
+  const PrintedFace face(board);
+  return RenderFace(camera, board, T_camera_board, 4, [&](const Eigen::Vector2d& at_board_m) {
+    return face.BrightnessAt(at_board_m);
+  });
 }
 
 }  // namespace voqcal::test

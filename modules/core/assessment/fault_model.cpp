@@ -55,7 +55,7 @@ std::optional<Eigen::Isometry3d> CameraBoardWith(const FaultVector& fault,
   true_camera.cy_px += fault[kPrincipalY];
   const auto points_board_m = true_board.InnerCornersBoardM();
   if (sample.camera.corners_px.size() != points_board_m.size()) return std::nullopt;
-  const auto fit = FitPlanarPose(true_camera, points_board_m, sample.camera.corners_px);
+  const auto fit = FitSeenCorners(true_camera, points_board_m, sample.camera.corners_px);
   if (!fit) return std::nullopt;
   return fit->T_camera_board;
 }

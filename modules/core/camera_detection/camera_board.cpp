@@ -38,20 +38,6 @@ cv::Mat Grey(const cv::Mat& image) {
   return grey;
 }
 
-std::optional<PlanarPose> FitSeenCorners(const CameraModel& camera,
-                                         const BoardSpec& board,
-                                         const std::vector<Eigen::Vector2d>& corners_px) {
-  const std::vector<Eigen::Vector3d> all_board_m = board.InnerCornersBoardM();
-  std::vector<Eigen::Vector3d> seen_board_m;
-  std::vector<Eigen::Vector2d> seen_px;
-  for (std::size_t i = 0; i < all_board_m.size(); ++i) {
-    if (!corners_px[i].allFinite()) continue;
-    seen_board_m.push_back(all_board_m[i]);
-    seen_px.push_back(corners_px[i]);
-  }
-  return FitPlanarPose(camera, seen_board_m, seen_px);
-}
-
 // Edges may be that wide, in pixels, before the image counts as blurred.
 double MaxEdgeWidthPx(const CameraModel& camera, const CameraBoardOptions& options) {
   // Pixels and lens alone make 1.2 to 1.8 of a monochrome camera, 2.1 to 2.5 of one whose colours
@@ -154,7 +140,7 @@ Expected<CameraBoard, CameraBoardMiss> DetectCameraBoard(const cv::Mat& image,
   const cv::Mat grey = Grey(image);
   const auto corners_px = TargetOf(board).find_corners(grey, board);
   if (!corners_px) return corners_px.error();
-  const auto fit = FitSeenCorners(camera, board, *corners_px);
+  const auto fit = FitSeenCorners(camera, board.InnerCornersBoardM(), *corners_px);
   if (!fit) return CameraBoardMiss{CameraBoardFault::kNoPose, ""};
   const CameraBoardView view = MeasureView(grey, camera, board, fit->T_camera_board, *corners_px);
   if (const auto miss = Untrusted(*fit, view, options)) return *miss;

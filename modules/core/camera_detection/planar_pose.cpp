@@ -179,4 +179,19 @@ std::optional<PlanarPose> FitPlanarPose(const CameraModel& camera,
   return best;
 }
 
+std::optional<PlanarPose> FitSeenCorners(const CameraModel& camera,
+                                         const std::vector<Eigen::Vector3d>& points_board_m,
+                                         const std::vector<Eigen::Vector2d>& pixels_px) {
+  constexpr std::size_t kMinPoints = 4;
+  std::vector<Eigen::Vector3d> seen_board_m;
+  std::vector<Eigen::Vector2d> seen_px;
+  for (std::size_t i = 0; i < points_board_m.size(); ++i) {
+    if (!pixels_px[i].allFinite()) continue;
+    seen_board_m.push_back(points_board_m[i]);
+    seen_px.push_back(pixels_px[i]);
+  }
+  if (seen_px.size() < kMinPoints) return std::nullopt;
+  return FitPlanarPose(camera, seen_board_m, seen_px);
+}
+
 }  // namespace voqcal

@@ -34,4 +34,10 @@ std::optional<PlanarPose> FitPlanarPose(const CameraModel& camera,
                                         const std::vector<Eigen::Vector3d>& points_board_m,
                                         const std::vector<Eigen::Vector2d>& pixels_px);
 
+/// The same by the points whose pixels are known: NaN is a corner that was not seen. Nothing too if
+/// fewer than 4 are.
+std::optional<PlanarPose> FitSeenCorners(const CameraModel& camera,
+                                         const std::vector<Eigen::Vector3d>& points_board_m,
+                                         const std::vector<Eigen::Vector2d>& pixels_px);
+
 }  // namespace voqcal

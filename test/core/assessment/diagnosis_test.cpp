@@ -1,5 +1,7 @@
 #include "core/assessment/diagnosis.hpp"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -62,7 +64,8 @@ class Session {
   CameraModel true_camera = test::TestCamera();
   CameraModel given_camera = test::TestCamera();
   int num_inconsistent = 0;
-  BiasEstimate range_offset;  ///< Taken out.
+  std::size_t num_hidden = 0;  ///< Corners of each board that the camera does not see.
+  BiasEstimate range_offset;   ///< Taken out.
 
  private:
   void SeeByCamera(BoardSample* sample, test::Random* random) const {
@@ -77,6 +80,9 @@ class Session {
         FitPlanarPose(given_camera, given_board.InnerCornersBoardM(), sample->camera.corners_px);
     ASSERT_TRUE(fit);
     sample->camera.pose = PoseFromTransform(fit->T_camera_board, given_board);
+    for (std::size_t k = 0; k < num_hidden; ++k) {
+      sample->camera.corners_px[k].setConstant(std::nan(""));
+    }
   }
 
   std::vector<BoardSample> samples_;
@@ -109,6 +115,14 @@ TEST(Diagnose, FindsAWrongFocalLength) {
   // What is left is noise: 3 mm an axis, 4.8 mm in space, and a little for the parameters.
   EXPECT_LT(finding.held_out_after_mm, 6);
   EXPECT_GT(finding.held_out_before_mm, 8);
+}
+
+TEST(Diagnose, FindsAWrongFocalLengthByBoardsThatAreSeenInPart) {
+  Session session;
+  session.num_hidden = 8;
+  session.given_camera.fx_px *= 1.02;
+  session.given_camera.fy_px *= 1.02;
+  EXPECT_EQ(FirstCause(session.Run()), "focal length");
 }
 
 TEST(Diagnose, FindsAWrongPrincipalPoint) {

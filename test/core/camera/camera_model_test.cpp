@@ -110,6 +110,23 @@ TEST(IsInFront, NeedsAPointAhead) {
   }
 }
 
+TEST(IsInFront, SeesBesideAndBehindThroughAFisheye) {
+  CameraModel camera = test::SmallCamera(LensModel::kEquidistant);
+  camera.distortion = {};
+  for (const double theta_rad : {1.5, M_PI / 2, 1.7, 2.5, 3.1}) {
+    const Eigen::Vector3d ray(std::sin(theta_rad), 0, std::cos(theta_rad));
+    ASSERT_TRUE(camera.IsInFront(2.0 * ray)) << theta_rad;
+    EXPECT_TRUE(camera.IsProjectable(2.0 * ray)) << theta_rad;
+    const Eigen::Vector2d pixel_px = camera.Project(Eigen::Vector3d(2.0 * ray));
+    EXPECT_NEAR(pixel_px.x(), camera.cx_px + camera.fx_px * theta_rad, 1e-9);
+    const auto back = camera.Unproject(pixel_px);
+    ASSERT_TRUE(back) << theta_rad;
+    EXPECT_LT((*back - ray).norm(), 1e-12) << theta_rad;
+  }
+  EXPECT_FALSE(camera.IsProjectable({0, 0, -1}));
+  EXPECT_FALSE(test::SmallCamera(LensModel::kPlumbBob).IsProjectable({1, 0, 0}));
+}
+
 TEST(IsInFront, SeesAlmostNinetyDegreesWithoutDistortion) {
   CameraModel camera = test::SmallCamera(LensModel::kEquidistant);
   camera.distortion = {};

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "core/camera_detection/calibration_target.hpp"
 #include "core/camera_detection/camera_board.hpp"
 #include "core/geometry/rigid.hpp"
 #include "support/matchers.hpp"
@@ -32,7 +33,7 @@ const CameraModel kCamera = [] {
 
 BoardSpec Charuco() {
   BoardSpec board{0.61, 0.85, 0.095, 5, 7, 0.002, 0};
-  board.pattern = BoardPattern::kCharuco;
+  board.pattern = "charuco";
   board.dictionary = "5x5_100";
   board.marker_m = 0.07;
   return board;
@@ -132,18 +133,18 @@ TEST(DetectCharuco, WarnsOfBlurAndOfGlare) {
 
 TEST(BoardSpecCharuco, SaysWhatIsWrong) {
   BoardSpec board = Charuco();
-  EXPECT_THAT(board.Problems(), ::testing::IsEmpty());
+  EXPECT_THAT(BoardProblems(board), ::testing::IsEmpty());
   board.dictionary = "5x5";
-  EXPECT_THAT(board.Problems().at(0), HasSubstr("dictionary must be a name"));
+  EXPECT_THAT(BoardProblems(board).at(0), HasSubstr("dictionary must be a name"));
   board.dictionary = "apriltag_16h5";  // 30 markers, and the board has 24 white squares
   board.marker_m = 0.1;
-  EXPECT_THAT(board.Problems().at(0), HasSubstr("marker_m must be above 0 and below square_m"));
+  EXPECT_THAT(BoardProblems(board).at(0), HasSubstr("marker_m must be above 0 and below square_m"));
   board.marker_m = 0.07;
   board.num_corners_x = 8;
   board.num_corners_y = 8;
   board.square_m = 0.06;
   board.marker_m = 0.05;
-  EXPECT_THAT(board.Problems().at(0), HasSubstr("must have a marker for each white square"));
+  EXPECT_THAT(BoardProblems(board).at(0), HasSubstr("must have a marker for each white square"));
 }
 
 }  // namespace

@@ -124,17 +124,31 @@ std::vector<std::string> LidarBoardOptions::Problems() const {
   return problems.lines();
 }
 
+std::vector<std::string> BoardPrior::Problems() const {
+  ProblemList problems;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    problems.RequirePositive("covariance(" + std::to_string(i) + ", " + std::to_string(i) + ")",
+                             covariance(i, i));
+  }
+  problems.Require(T_lidar_board.matrix().allFinite(),
+                   "T_lidar_board must be finite",
+                   T_lidar_board.translation().transpose());
+  return problems.lines();
+}
+
 Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
     const PointCloud& cloud_lidar_m,
     const BoardSpec& board,
     const LidarBoardOptions& options,
-    const LidarBackground* background) {
+    const LidarBackground* background,
+    const std::optional<BoardPrior>& prior) {
   // Bounds on the time: patches come in the order of how like the board they are spread.
   constexpr std::size_t kMaxPatches = 8;
   constexpr std::size_t kMaxPatchesUntilFound = 40;
   constexpr double kAsGood = 0.8;  // share of the best likelihood that a rival may reach
   RequireUsable("DetectLidarBoard: board", board.Problems());
   RequireUsable("DetectLidarBoard: options", options.Problems());
+  if (prior) RequireUsable("DetectLidarBoard: prior", prior->Problems());
 
   const std::vector<Eigen::Vector3d> points_m = SearchedPoints(cloud_lidar_m, options);
   if (points_m.size() < kMinPoints) return NoLidarBoard{LidarBoardMiss::kTooFewPoints, {}};
@@ -157,7 +171,7 @@ Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
   if (background != nullptr) Favour(*background, &found);
   std::vector<LidarBoard> ranked = Ranked(std::move(found), board);
   if (ranked.size() > 1 && ranked[1].log_likelihood > kAsGood * ranked[0].log_likelihood) {
-    return NoLidarBoard{LidarBoardMiss::kAmbiguous, {}};
+    return NoLidarBoard{LidarBoardMiss::kAmbiguous, {}, std::move(ranked)};
   }
   return ranked;
 }

@@ -54,18 +54,35 @@ struct LidarBoardOptions {
   std::vector<std::string> Problems() const;
 };
 
+/// Where the board is expected: a camera's sighting of it and a rough extrinsic tell.
+struct BoardPrior {
+  Eigen::Isometry3d T_lidar_board = Eigen::Isometry3d::Identity();
+  /// Of [rotation_rad; translation_m], perturbed on the left (lidar) side at the board's centre.
+  Matrix6d covariance = Matrix6d::Zero();
+
+  /// One line for each broken constraint, with its value; empty if the prior is usable.
+  std::vector<std::string> Problems() const;
+};
+
 /// Finds the board of known size in one whole sweep: no region of interest, rings or order of
 /// points needed.
+///
+/// Without a prior a board counts as found only if its measured sides tell it from other things;
+/// what may be the board, but may be something else, is in the error's `unsure`, best first. With a
+/// prior the board is searched there alone (within three sigma), which side is which is known, and
+/// its outline may be as incomplete as the sweep leaves it. The prior chooses; it adds nothing to
+/// the pose's covariance.
 ///
 /// @param background  of earlier sweeps; null if there are none. What came since they were learned
 ///     ranks higher, by up to twice its likelihood; poses do not depend on it.
 /// @return candidates, best first, never empty; or why there is none: an empty view is an ordinary
 ///     answer, not an error.
-/// @throws std::invalid_argument if `board` or `options` have Problems().
+/// @throws std::invalid_argument if `board`, `options` or `prior` have Problems().
 Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
     const PointCloud& cloud_lidar_m,
     const BoardSpec& board,
     const LidarBoardOptions& options,
-    const LidarBackground* background = nullptr);
+    const LidarBackground* background = nullptr,
+    const std::optional<BoardPrior>& prior = {});
 
 }  // namespace voqcal

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "core/board/board_sample.hpp"
 
 namespace voqcal {
 
@@ -24,6 +27,8 @@ std::string ToString(LidarBoardMiss miss);  ///< "too few points", ... as MODULE
 struct NoLidarBoard {
   LidarBoardMiss miss = LidarBoardMiss::kNoPlane;
   std::string detail;  ///< "on the left", "by 12 mm"; empty if there is nothing to add.
+  /// What may be the board, but may be something else, best first: for a vote of many sweeps.
+  std::vector<LidarBoard> unsure{};
 };
 
 std::string ToString(const NoLidarBoard& none);  ///< "partly hidden on the left", ...

@@ -1,6 +1,9 @@
 #include "core/lidar_detection/board_measurement.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "core/lidar_detection/detection_tolerances.hpp"
 
 namespace voqcal {
 
@@ -13,6 +16,11 @@ Eigen::Isometry3d TransformOf(const PlaneFrame& frame, const RectanglePose& pose
   T_lidar_board.linear() = R;
   T_lidar_board.translation() = frame.ToLidar(pose.centre_m);
   return T_lidar_board;
+}
+
+double SpacingM(const Measurement& m) {
+  const auto num = static_cast<double>(std::max(m.board_hits.size(), kMinBoardHits));
+  return std::sqrt(m.model.width_m * m.model.height_m / num);
 }
 
 std::vector<std::uint16_t> RingsOf(const Measurement& m, const PointCloud& cloud_lidar_m) {

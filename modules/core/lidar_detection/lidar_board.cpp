@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <utility>
 
 #include "core/lidar_detection/lidar_beams.hpp"
 #include "core/lidar_detection/measure_board.hpp"
@@ -66,7 +68,8 @@ bool IsPartOfAny(const PlanarPatch& patch, const std::vector<LidarBoard>& found)
 /// What came since the background was learned is up to twice as likely.
 void Favour(const LidarBackground& background, std::vector<LidarBoard>* found) {
   for (LidarBoard& board : *found) {
-    board.log_likelihood *= 1.0 + background.ShareThatCame(board.points_lidar_m);
+    board.log_likelihood +=
+        background.ShareThatCame(board.points_lidar_m) * std::abs(board.log_likelihood);
   }
 }
 
@@ -77,10 +80,19 @@ bool OverlapsAny(const LidarBoard& board, const std::vector<LidarBoard>& better,
   });
 }
 
+/// Whether a rival is nearly as likely as the best, in nats; a whole sighting beats a partial one.
+bool IsAsGood(const LidarBoard& rival, const LidarBoard& best) {
+  constexpr double kLess = 0.2;  // of the best one's evidence
+  return NumMeasuredSides(rival) >= NumMeasuredSides(best) &&
+         best.log_likelihood - rival.log_likelihood < kLess * std::abs(best.log_likelihood);
+}
+
 /// Best first, each place once.
 std::vector<LidarBoard> Ranked(std::vector<LidarBoard> found, const BoardSpec& board) {
   std::stable_sort(found.begin(), found.end(), [](const LidarBoard& a, const LidarBoard& b) {
-    return a.log_likelihood > b.log_likelihood;
+    const bool is_a_whole = NumMeasuredSides(a) == 4;
+    const bool is_b_whole = NumMeasuredSides(b) == 4;
+    return is_a_whole != is_b_whole ? is_a_whole : a.log_likelihood > b.log_likelihood;
   });
   std::vector<LidarBoard> ranked;
   for (LidarBoard& candidate : found) {
@@ -88,6 +100,42 @@ std::vector<LidarBoard> Ranked(std::vector<LidarBoard> found, const BoardSpec& b
     ranked.push_back(std::move(candidate));
   }
   return ranked;
+}
+
+/// What the patches of a sweep may be.
+struct Search {
+  std::vector<LidarBoard> sure;
+  std::vector<LidarBoard> unsure;
+  NoLidarBoard closest{LidarBoardMiss::kNoPlane, {}};
+};
+
+Search SearchPatches(const std::vector<Eigen::Vector3d>& points_m,
+                     const BeamIndex& index,
+                     const PointCloud& cloud_lidar_m,
+                     const BoardSpec& board,
+                     const LidarBoardOptions& options) {
+  // Bounds on the time: patches come in the order of how like the board they are spread.
+  constexpr std::size_t kMaxPatches = 8;
+  constexpr std::size_t kMaxPatchesUntilFound = 40;
+  const std::vector<PlanarPatch> patches = FindPlanarPatches(points_m, PatchesOf(board));
+  Search search;
+  const auto come_closer = [&search](NoLidarBoard none) {
+    if (none.miss > search.closest.miss) search.closest = std::move(none);
+  };
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (i >= (search.sure.empty() ? kMaxPatchesUntilFound : kMaxPatches)) break;
+    if (IsPartOfAny(patches[i], search.sure)) continue;
+    auto measured = MeasureBoard(patches[i], index, cloud_lidar_m, board, options);
+    if (!measured) {
+      come_closer(std::move(measured.error()));
+    } else if (measured->doubt) {
+      search.unsure.push_back(std::move(measured->board));
+      come_closer(std::move(*measured->doubt));
+    } else {
+      search.sure.push_back(std::move(measured->board));
+    }
+  }
+  return search;
 }
 
 }  // namespace
@@ -142,10 +190,6 @@ Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
     const LidarBoardOptions& options,
     const LidarBackground* background,
     const std::optional<BoardPrior>& prior) {
-  // Bounds on the time: patches come in the order of how like the board they are spread.
-  constexpr std::size_t kMaxPatches = 8;
-  constexpr std::size_t kMaxPatchesUntilFound = 40;
-  constexpr double kAsGood = 0.8;  // share of the best likelihood that a rival may reach
   RequireUsable("DetectLidarBoard: board", board.Problems());
   RequireUsable("DetectLidarBoard: options", options.Problems());
   if (prior) RequireUsable("DetectLidarBoard: prior", prior->Problems());
@@ -153,27 +197,25 @@ Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
   const std::vector<Eigen::Vector3d> points_m = SearchedPoints(cloud_lidar_m, options);
   if (points_m.size() < kMinPoints) return NoLidarBoard{LidarBoardMiss::kTooFewPoints, {}};
 
-  const std::vector<PlanarPatch> patches = FindPlanarPatches(points_m, PatchesOf(board));
   const BeamIndex index(cloud_lidar_m, options.min_range_m);
-  std::vector<LidarBoard> found;
-  NoLidarBoard closest{LidarBoardMiss::kNoPlane, {}};
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (i >= (found.empty() ? kMaxPatchesUntilFound : kMaxPatches)) break;
-    if (IsPartOfAny(patches[i], found)) continue;
-    auto measured = MeasureBoard(patches[i], index, cloud_lidar_m, board, options);
-    if (measured)
-      found.push_back(std::move(*measured));
-    else if (measured.error().miss > closest.miss)
-      closest = measured.error();
+  if (prior) {
+    auto measured = MeasureExpectedBoard(*prior, index, cloud_lidar_m, board, options);
+    if (!measured) return measured.error();
+    return std::vector<LidarBoard>{std::move(measured->board)};
   }
-  if (found.empty()) return closest;
-
-  if (background != nullptr) Favour(*background, &found);
-  std::vector<LidarBoard> ranked = Ranked(std::move(found), board);
-  if (ranked.size() > 1 && ranked[1].log_likelihood > kAsGood * ranked[0].log_likelihood) {
-    return NoLidarBoard{LidarBoardMiss::kAmbiguous, {}, std::move(ranked)};
+  Search search = SearchPatches(points_m, index, cloud_lidar_m, board, options);
+  if (background != nullptr) Favour(*background, &search.sure);
+  if (background != nullptr) Favour(*background, &search.unsure);
+  std::vector<LidarBoard> sure = Ranked(std::move(search.sure), board);
+  NoLidarBoard none = std::move(search.closest);
+  if (sure.size() > 1 && IsAsGood(sure[1], sure[0])) {
+    none = {LidarBoardMiss::kAmbiguous, {}};
+    std::move(sure.begin(), sure.end(), std::back_inserter(search.unsure));
+  } else if (!sure.empty()) {
+    return sure;
   }
-  return ranked;
+  none.unsure = Ranked(std::move(search.unsure), board);
+  return none;
 }
 
 }  // namespace voqcal

@@ -14,6 +14,8 @@ std::string ToString(LidarBoardMiss miss) {
       return "size mismatch";
     case LidarBoardMiss::kFlat:
       return "seen at too flat an angle";
+    case LidarBoardMiss::kJoined:
+      return "outline open: joined to something";
     case LidarBoardMiss::kCutOff:
       return "outline open: the field of view ends";
     case LidarBoardMiss::kGap:

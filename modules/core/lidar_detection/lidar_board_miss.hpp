@@ -13,6 +13,7 @@ enum class LidarBoardMiss {
   kNoPlane,       ///< No planar patch of about the board's size.
   kSizeMismatch,  ///< Planar patches, but none whose outline fits the board's size.
   kFlat,          ///< A patch fits, but its plane is seen at too flat an angle.
+  kJoined,        ///< A patch fits, but its plane goes on past one side, or the ground begins there.
   kCutOff,        ///< A patch fits, but past one side there are no beams: the field of view ends.
   kGap,           ///< A patch fits, but at one side this sweep left too much unseen.
   kHidden,        ///< A patch fits, but something stands before one side of it.

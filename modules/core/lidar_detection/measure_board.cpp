@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -12,6 +15,7 @@
 #include "core/lidar/plane_fit.hpp"
 #include "core/lidar/shade_scale.hpp"
 #include "core/lidar_detection/board_measurement.hpp"
+#include "core/lidar_detection/detection_tolerances.hpp"
 #include "core/lidar_detection/outline_checks.hpp"
 #include "core/lidar_detection/outline_doubt.hpp"
 #include "core/lidar_detection/outline_edges.hpp"
@@ -64,7 +68,7 @@ Measurement Begin(const PlanarPatch& patch,
   const double diagonal_m = std::hypot(board.width_m, board.height_m);
   const double band_m = options.beam.hit_band_m;
   Measurement m{
-      PatchView(beams, plane.point_m, diagonal_m), band_m, PlaneFrame(plane), {}, {}, {}, {}};
+      PatchView(beams, plane.point_m, diagonal_m), band_m, PlaneFrame(plane), {}, {}, {}, {}, {}, {}};
   m.model = ModelOf(board, options, plane.point_m.norm());
   m.view.Classify(m.frame, band_m);
   return m;
@@ -115,12 +119,19 @@ bool RefinePlane(const PointCloud& cloud_lidar_m, Measurement* m) {
   return true;
 }
 
-/// Turns the rectangle upright and takes all its points. False if too few are left.
+/// What is past the sides of the rectangle, and which beams tell of it.
+void LookAround(Measurement* m) {
+  m->sides = LookAtSides(
+      m->view.Outline(), m->view.Blocked(), m->model, m->outline.pose, SpacingM(*m));
+  m->telling = TellingBeams(m->view.Outline(), m->model, m->outline.pose, m->sides);
+}
+
+/// Takes all the rectangle's points. False if too few are left.
 bool Finish(const PointCloud& cloud_lidar_m, Measurement* m) {
-  m->outline.pose = Upright(m->frame, m->outline.pose);
   m->model.lean = LeanOf(m->frame, m->outline.pose);
-  m->outline = EvaluateOutline(m->view.Outline(), m->model, m->outline);
-  m->outline = SettleOutline(m->view.Outline(), m->model, m->outline);
+  LookAround(m);
+  m->outline = EvaluateOutline(m->telling, m->model, m->outline);
+  m->outline = SettleOutline(m->telling, m->model, m->outline);
   m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, 0.0);
   m->positions_m = EvenlyShaded(*m, m->frame.plane, cloud_lidar_m);
   return m->board_hits.size() >= kMinBoardHits;
@@ -136,7 +147,7 @@ bool IsSeenFlat(const Measurement& m) {
 }
 
 Agreement AgreementOf(const Measurement& m) {
-  return Compare(m.view.Outline(), m.view.BlockedM(), m.model, m.outline.pose);
+  return Compare(m.telling, m.view.Blocked(), m.model, m.outline.pose);
 }
 
 /// Of [rotation_rad; translation_m], left side. The outline gives the shift in the plane and the
@@ -176,7 +187,7 @@ Matrix6d CovarianceOf(const Eigen::Isometry3d& T_lidar_board,
 }
 
 LidarBoard Describe(const Measurement& m,
-                    const std::array<double, 4>& edge_lengths_m,
+                    const std::array<double, 4>& lengths_m,
                     const PointCloud& cloud_lidar_m,
                     const BoardSpec& board,
                     double line_sigma_m) {
@@ -184,8 +195,14 @@ LidarBoard Describe(const Measurement& m,
   LidarBoard found;
   found.pose = PoseFromTransform(T_lidar_board, board);
   found.pose.covariance = CovarianceOf(T_lidar_board, m, cloud_lidar_m, line_sigma_m);
-  found.edge_lengths_m = edge_lengths_m;
-  found.log_likelihood = m.outline.log_likelihood - LogLikelihoodOfChance(m.view.Outline());
+  for (std::size_t i = 0; i < 4; ++i) found.sides[i] = m.sides[i].view;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool is_measured = found.sides[(i + 3) % 4] == SideView::kMeasured &&
+                             found.sides[(i + 1) % 4] == SideView::kMeasured;
+    found.edge_lengths_m[i] =
+        is_measured ? lengths_m[i] : std::numeric_limits<double>::quiet_NaN();
+  }
+  found.log_likelihood = m.outline.log_likelihood - LogLikelihoodOfChance(m.telling);
   double sum_squares_m2 = 0.0;
   PointCloud& points = found.points_lidar_m;
   points.has_intensity = cloud_lidar_m.has_intensity;
@@ -204,48 +221,138 @@ LidarBoard Describe(const Measurement& m,
 
 NoLidarBoard Because(LidarBoardMiss miss) { return {miss, {}}; }
 
-}  // namespace
+/// Things may touch the board: their hits count less while it is not known where.
+OutlineModel AmongThings(OutlineModel model) {
+  model.stray_hits = 0.05;
+  return model;
+}
 
-Expected<LidarBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
-                                                const BeamIndex& beams,
-                                                const PointCloud& cloud_lidar_m,
-                                                const BoardSpec& board,
-                                                const LidarBoardOptions& options) {
-  constexpr double kRoughly = 2.0;
-  // Of a beam, in nats. Real boards leave 0.03; windows, doors and people 0.3 and more.
-  constexpr double kMaxUnexplained = 0.25;
-  Measurement m = Begin(patch, beams, board, options);
-  const std::vector<OutlineBeam>& outline_beams = m.view.Outline();
-  if (!CouldShowBoard(outline_beams, m.model)) return Because(LidarBoardMiss::kSizeMismatch);
-  m.outline = SearchOutline(outline_beams, m.model, Eigen::Vector2d::Zero());
-  if (m.outline.Unexplained() > kRoughly * kMaxUnexplained)
-    return Because(LidarBoardMiss::kSizeMismatch);
-  // Plane and outline in turns: the outline says which points are the board's, and the plane where
-  // the beams meet it.
-  for (const double first_blur_m : {SearchBlurM(m.model) / 2, 3 * m.model.blur_m, 0.0}) {
-    const Agreement agreement = AgreementOf(m);
-    if (!agreement.IsBoardLike()) return Because(LidarBoardMiss::kSizeMismatch);
-    const auto edges = CountEdges(outline_beams, m.model, m.outline.pose);
-    if (auto open = OpenSide(m, beams, edges, agreement, kRoughly)) return *open;
-    if (!RefinePlane(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
-    const bool is_last = first_blur_m == 0.0;
-    m.outline = is_last ? RefineOutline(outline_beams, m.model, m.outline.pose)
-                        : SharpenOutline(outline_beams, m.model, m.outline.pose, first_blur_m);
+/// Plane and outline in turns: the outline says which points are the board's, and the plane where
+/// the beams meet it; then what is past its sides says which beams tell of it.
+std::optional<NoLidarBoard> FitPlaneAndOutline(const PointCloud& cloud_lidar_m, Measurement* m) {
+  for (const double first_blur_m : {SearchBlurM(m->model) / 2, 3 * m->model.blur_m}) {
+    LookAround(m);
+    if (!AgreementOf(*m).IsBoardLike()) return Because(LidarBoardMiss::kSizeMismatch);
+    if (!RefinePlane(cloud_lidar_m, m)) return Because(LidarBoardMiss::kNoPlane);
+    m->outline =
+        SharpenOutline(m->view.Outline(), AmongThings(m->model), m->outline.pose, first_blur_m);
   }
-  if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
+  LookAround(m);
+  if (!RefinePlane(cloud_lidar_m, m)) return Because(LidarBoardMiss::kNoPlane);
+  for (int i = 0; i < 2; ++i) {
+    LookAround(m);
+    m->outline = RefineOutline(m->telling, m->model, m->outline.pose);
+  }
+  return {};
+}
+
+/// What speaks against the patch, or the board at it.
+Expected<MeasuredBoard, NoLidarBoard> Decide(const Measurement& m,
+                                             const BeamIndex& beams,
+                                             const PointCloud& cloud_lidar_m,
+                                             const BoardSpec& board,
+                                             const LidarBoardOptions& options) {
   const Agreement agreement = AgreementOf(m);
   if (!agreement.IsBoardLike() || m.outline.Unexplained() > kMaxUnexplained)
     return Because(LidarBoardMiss::kSizeMismatch);
-  const std::array<OutlineEdge, 4> edges = MeasureEdges(outline_beams, m.model, m.outline.pose);
-  if (auto open = OpenSide(m, beams, edges, agreement, 1.0)) return *open;
   if (IsSeenFlat(m)) return Because(LidarBoardMiss::kFlat);
-  if (auto unproven = UnprovenSide(m)) return *unproven;
+  const std::array<OutlineEdge, 4> edges = MeasureEdges(m.telling, m.model, m.outline.pose);
   const std::array<double, 4> lengths_m = EdgeLengthsM(edges, m.model);
-  if (!HasRightSize(m, edges, lengths_m, board.EdgeLengthsM()))
+  const std::array<bool, 4> is_told = ToldSides(m, beams, edges);
+  if (!HasRightSize(m, edges, lengths_m, board.EdgeLengthsM(), is_told))
     return Because(LidarBoardMiss::kSizeMismatch);
-  if (IsLoose(m, options.max_corner_sigma_m)) return Because(LidarBoardMiss::kLoose);
   if (auto bent = Bend(m, cloud_lidar_m, options.max_bend_m)) return *bent;
-  return Describe(m, lengths_m, cloud_lidar_m, board, options.beam.line_sigma_m);
+  std::optional<NoLidarBoard> doubt = Doubt(m, agreement, is_told);
+  if (!doubt && IsLoose(m, options.max_corner_sigma_m)) doubt = Because(LidarBoardMiss::kLoose);
+  return MeasuredBoard{Describe(m, lengths_m, cloud_lidar_m, board, options.beam.line_sigma_m),
+                       std::move(doubt)};
+}
+
+/// The returns where the board is expected, its depth being as uncertain as the prior says.
+std::vector<Eigen::Vector3d> ExpectedPointsM(const BoardPrior& prior,
+                                             const BeamIndex& beams,
+                                             const BoardSpec& board,
+                                             double reach_m) {
+  const Eigen::Vector3d centre_m = prior.T_lidar_board.translation();
+  const double radius_m = std::hypot(board.width_m, board.height_m) / 2 + reach_m;
+  std::vector<LidarBeam> cone;
+  beams.AppendCone(centre_m.normalized(), std::atan2(radius_m, centre_m.norm()), &cone);
+  const Eigen::Isometry3d T_board_lidar = prior.T_lidar_board.inverse();
+  const Eigen::Array3d half_m(board.width_m / 2, board.height_m / 2, reach_m);
+  std::vector<Eigen::Vector3d> points_m;
+  for (const LidarBeam& beam : cone) {
+    const Eigen::Vector3d p_m = T_board_lidar * beam.PositionM();
+    if ((p_m.array().abs() < half_m).all()) points_m.push_back(beam.PositionM());
+  }
+  return points_m;
+}
+
+/// Three sigma of the prior's centre, and of its tilt at the board's rim.
+double ReachM(const BoardPrior& prior, const BoardSpec& board) {
+  constexpr double kSigmas = 3.0;
+  constexpr double kLeastM = 0.05;
+  const double tilt_rad = std::sqrt(prior.covariance.diagonal().head<3>().maxCoeff());
+  const double shift_m = std::sqrt(prior.covariance.diagonal().tail<3>().maxCoeff());
+  return kLeastM + kSigmas * (shift_m + tilt_rad * std::hypot(board.width_m, board.height_m) / 4);
+}
+
+/// Whether pose and prior differ by no more than both allow.
+bool FitsIn(const BoardPose& pose, const BoardPrior& prior) {
+  constexpr double kMaxSquare = 22.5;  // chi-square of six, one in a thousand
+  Vector6d off;
+  const Eigen::Isometry3d T_lidar_board = TransformFromPose(pose);
+  const Eigen::AngleAxisd turn(T_lidar_board.linear() *
+                               prior.T_lidar_board.linear().transpose());
+  off << turn.angle() * turn.axis(),
+      T_lidar_board.translation() - prior.T_lidar_board.translation();
+  const Matrix6d both = pose.covariance + prior.covariance;
+  return off.dot(both.ldlt().solve(off)) < kMaxSquare;
+}
+
+}  // namespace
+
+Expected<MeasuredBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
+                                                   const BeamIndex& beams,
+                                                   const PointCloud& cloud_lidar_m,
+                                                   const BoardSpec& board,
+                                                   const LidarBoardOptions& options) {
+  Measurement m = Begin(patch, beams, board, options);
+  if (!CouldShowBoard(m.view.Outline(), m.model)) return Because(LidarBoardMiss::kSizeMismatch);
+  m.outline = SearchOutline(m.view.Outline(), AmongThings(m.model), Eigen::Vector2d::Zero());
+  if (m.outline.Unexplained() > kMaxUnexplainedRoughly)
+    return Because(LidarBoardMiss::kSizeMismatch);
+  if (auto none = FitPlaneAndOutline(cloud_lidar_m, &m)) return *none;
+  m.outline.pose = Upright(m.frame, m.outline.pose);
+  if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
+  return Decide(m, beams, cloud_lidar_m, board, options);
+}
+
+Expected<MeasuredBoard, NoLidarBoard> MeasureExpectedBoard(const BoardPrior& prior,
+                                                           const BeamIndex& beams,
+                                                           const PointCloud& cloud_lidar_m,
+                                                           const BoardSpec& board,
+                                                           const LidarBoardOptions& options) {
+  const double reach_m = ReachM(prior, board);
+  const std::vector<Eigen::Vector3d> points_m = ExpectedPointsM(prior, beams, board, reach_m);
+  if (points_m.size() < kMinBoardHits) return Because(LidarBoardMiss::kNoPlane);
+  PlanarPatch patch;
+  patch.middle_m = prior.T_lidar_board.translation();
+  patch.plane.point_m = patch.middle_m;
+  patch.plane.normal = prior.T_lidar_board.linear().col(2);
+  for (double scale_m = reach_m / 2; scale_m > 0.02; scale_m /= 2) {
+    patch.plane = FitPlaneRobustly(points_m, patch.plane, scale_m);
+  }
+  Measurement m = Begin(patch, beams, board, options);
+  const Eigen::Vector3d width_axis = prior.T_lidar_board.linear().col(0);
+  m.outline.pose = {Eigen::Vector2d::Zero(),
+                    std::atan2(m.frame.e2.dot(width_axis), m.frame.e1.dot(width_axis))};
+  m.outline.spill_m = m.model.spill_m;
+  m.outline.thickness_m = m.model.thickness_m;
+  if (auto none = FitPlaneAndOutline(cloud_lidar_m, &m)) return *none;
+  if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
+  auto decided = Decide(m, beams, cloud_lidar_m, board, options);
+  if (decided && !FitsIn(decided->board.pose, prior)) return Because(LidarBoardMiss::kNoPlane);
+  return decided;
 }
 
 }  // namespace voqcal

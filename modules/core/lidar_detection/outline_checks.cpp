@@ -13,7 +13,7 @@ bool Agreement::IsBoardLike() const {
 }
 
 Agreement Compare(const std::vector<OutlineBeam>& beams,
-                  const std::vector<Eigen::Vector2d>& blocked_m,
+                  const std::vector<BlockedBeam>& blocked,
                   const OutlineModel& model,
                   const RectanglePose& pose) {
   constexpr double kMarginM = 0.03;  // partly hit beams prove nothing
@@ -43,8 +43,8 @@ Agreement Compare(const std::vector<OutlineBeam>& beams,
     if (out_m > kMarginM && out_m < kBorderM) outside[beam.is_hit] += 1;
     if (out_m < 0) mark(q_m, beam.is_hit ? Field::kHit : Field::kEmpty);
   }
-  for (const Eigen::Vector2d& p_m : blocked_m) {
-    const Eigen::Vector2d q_m = T_rectangle_plane * p_m;
+  for (const BlockedBeam& beam : blocked) {
+    const Eigen::Vector2d q_m = T_rectangle_plane * beam.position_m;
     if (outside_m_of(q_m) < 0) mark(q_m, Field::kEmpty);
   }
   Agreement agreement;
@@ -73,8 +73,6 @@ Agreement Compare(const std::vector<OutlineBeam>& beams,
         continue;
       }
       agreement.covered += kFieldShare;
-      agreement.covered_half[x < kNumFields / 2 ? 3 : 1] += 2 * kFieldShare;
-      agreement.covered_half[y < kNumFields / 2 ? 0 : 2] += 2 * kFieldShare;
     }
   }
   return agreement;
@@ -84,8 +82,8 @@ bool CouldShowBoard(const std::vector<OutlineBeam>& beams, const OutlineModel& m
   constexpr double kMinHitsInside = 0.7;
   // A person and a pole in the plane fill a tenth of the surroundings; where these have no returns
   // (a cropped cloud, the sky), they are still few beside the board's own.
-  constexpr double kMaxHitsOutside = 0.2;
-  constexpr double kMaxHitsPerOwn = 0.3;
+  constexpr double kMaxHitsOutside = 0.5;
+  constexpr double kMaxHitsPerOwn = 0.6;
   const double shorter_m = std::min(model.width_m, model.height_m);
   const double off_m = shorter_m / 6;  // of the patch's middle from the board's
   const double inside_m = shorter_m / 2 - off_m;
@@ -107,35 +105,10 @@ bool CouldShowBoard(const std::vector<OutlineBeam>& beams, const OutlineModel& m
              std::max(kMaxHitsOutside * (outside[0] + outside[1]), kMaxHitsPerOwn * num_own);
 }
 
-bool IsClosed(const OutlineEdge& edge) {
-  constexpr int kMinMisses = 2;
-  return edge.num_misses >= kMinMisses;
-}
-
-std::optional<std::size_t> OpenEdge(const std::array<OutlineEdge, 4>& edges,
-                                    const std::array<bool, 4>& is_covered,
-                                    const Agreement& agreement,
-                                    double max_short_m,
-                                    double slack) {
-  constexpr double kMinCovered = 0.8;
-  std::optional<std::size_t> open;
-  constexpr double kMaxShortIfOutlined = 0.5;  // of max_short_m: the hits alone must show it
-  bool is_outlined = agreement.empty <= 1.0 - kMinCovered;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double short_m = -edges[i].reach_m / slack;
-    is_outlined = is_outlined && IsClosed(edges[i]) && edges[i].num_hits > 0 &&
-                  short_m < kMaxShortIfOutlined * max_short_m;
-    if (IsClosed(edges[i]) || (is_covered[i] && short_m < max_short_m)) continue;
-    if (!open || edges[i].reach_m < edges[*open].reach_m) open = i;
-  }
-  if (open || is_outlined || agreement.covered >= kMinCovered / slack) return open;
-  const auto& half = agreement.covered_half;
-  return static_cast<std::size_t>(std::min_element(half.begin(), half.end()) - half.begin());
-}
-
 bool AreLengthsRight(const std::array<double, 4>& measured_m,
                      const std::array<OutlineEdge, 4>& edges,
                      const std::array<double, 4>& true_m,
+                     const std::array<bool, 4>& is_told,
                      const LengthTolerance& of_one,
                      const LengthTolerance& of_mean) {
   const auto holds = [](const LengthTolerance& tolerance, double error_m, double sigma_m) {
@@ -144,6 +117,7 @@ bool AreLengthsRight(const std::array<double, 4>& measured_m,
   };
   for (std::size_t i = 0; i < 2; ++i) {
     // Edge i and the one opposite reach from the edge before to the edge after.
+    if (!is_told[(i + 3) % 4] || !is_told[i + 1]) continue;
     const double sigma_m =
         std::hypot(edges[(i + 3) % 4].offset_sigma_m, edges[i + 1].offset_sigma_m);
     const double error_m = measured_m[i] - true_m[i];
@@ -154,82 +128,6 @@ bool AreLengthsRight(const std::array<double, 4>& measured_m,
     }
   }
   return true;
-}
-
-std::array<PastEdge, 4> LookPastEdges(const std::vector<OutlineBeam>& beams,
-                                      const std::vector<Eigen::Vector2d>& blocked_m,
-                                      const OutlineModel& model,
-                                      const RectanglePose& pose,
-                                      double past_m) {
-  constexpr double kMarginM = 0.03;  // nearer, beams may be partly of the board
-  struct Part {
-    int num_hits = 0;
-    int num_misses = 0;
-    int num_blocked = 0;
-  };
-  std::array<std::array<Part, PastEdge::kNumParts>, 4> parts{};
-  std::array<PastEdge, 4> past{};
-  const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
-  const Eigen::Array2d half_m(model.width_m / 2, model.height_m / 2);
-  // The edge just past which a place is, and the part of it; none for the corners and for what is
-  // inside or far.
-  struct Place {
-    std::size_t edge;
-    std::size_t part;
-  };
-  const auto place_of = [&](const Eigen::Vector2d& p_m) -> std::optional<Place> {
-    const Eigen::Vector2d q_m = T_rectangle_plane * p_m;
-    const Eigen::Array2d out_m = q_m.array().abs() - half_m;
-    if ((out_m > 0).all() || (out_m <= 0).all() || out_m.maxCoeff() > past_m) return {};
-    const bool is_beside = out_m.x() > 0;
-    const double along = is_beside ? q_m.y() / half_m.y() : q_m.x() / half_m.x();
-    const std::size_t edge = is_beside ? (q_m.x() > 0 ? 1 : 3) : (q_m.y() > 0 ? 2 : 0);
-    const double part = (along + 1.0) / 2.0 * PastEdge::kNumParts;
-    return Place{edge, static_cast<std::size_t>(std::min(part, PastEdge::kNumParts - 1.0))};
-  };
-  const auto is_clear = [&](const Eigen::Vector2d& p_m) {
-    const Eigen::Vector2d q_m = T_rectangle_plane * p_m;
-    return (q_m.array().abs() - half_m).maxCoeff() > kMarginM;
-  };
-  for (const Eigen::Vector2d& p_m : blocked_m) {
-    const auto place = place_of(p_m);
-    if (!place) continue;
-    ++past[place->edge].num_blocked;
-    ++parts[place->edge][place->part].num_blocked;
-  }
-  for (const OutlineBeam& beam : beams) {
-    const auto place = place_of(beam.position_m);
-    if (!place) continue;
-    if (beam.is_hit) {
-      if (is_clear(beam.position_m)) ++parts[place->edge][place->part].num_hits;
-      continue;
-    }
-    ++past[place->edge].num_misses;
-    ++parts[place->edge][place->part].num_misses;
-  }
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (const Part& part : parts[i]) {
-      if (part.num_misses > part.num_blocked) ++past[i].num_parts_shown;
-      if (part.num_hits > part.num_misses) ++past[i].num_parts_hit;
-    }
-  }
-  return past;
-}
-
-bool IsHidden(const std::vector<Eigen::Vector2d>& blocked_m,
-              const OutlineModel& model,
-              const RectanglePose& pose,
-              std::size_t edge) {
-  constexpr double kPastM = 0.1;
-  constexpr std::ptrdiff_t kMinBlocked = 3;  // fewer are stray
-  const Eigen::Isometry2d T_rectangle_plane = pose.T_rectangle_plane();
-  const Eigen::Vector2d outward = OutwardOf(edge);
-  const Eigen::Array2d half_m(model.width_m / 2, model.height_m / 2);
-  const auto num = std::count_if(blocked_m.begin(), blocked_m.end(), [&](const auto& p_m) {
-    const Eigen::Vector2d q_m = T_rectangle_plane * p_m;
-    return outward.dot(q_m) > 0 && (q_m.array().abs() < half_m + kPastM).all();
-  });
-  return num >= kMinBlocked;
 }
 
 double LogLikelihoodOfChance(const std::vector<OutlineBeam>& beams) {

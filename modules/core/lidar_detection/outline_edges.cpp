@@ -91,7 +91,7 @@ void FitLine(const std::vector<NearBeam>& near,
              double window_m,
              OutlineEdge* edge) {
   constexpr int kNumIterations = 20;
-  const double keep = 1.0 - model.outlier_share;
+  const double keep = 1.0 - model.stray_hits - model.stray_misses;
   Eigen::Vector2d line = Eigen::Vector2d::Zero();
   double largest_step_m = window_m / 4;
   double last_step_m = 0.0;
@@ -104,7 +104,7 @@ void FitLine(const std::vector<NearBeam>& near,
       const double t =
           (line[0] + line[1] * beam.along_m + side.grow_m - beam.outside_m) / side.blur_m;
       const double L = 1.0 / (1.0 + std::exp(-t));
-      const double p_hit = model.outlier_share / 2 + keep * L;
+      const double p_hit = model.stray_hits + keep * L;
       const Eigen::Vector2d J = keep * L * (1 - L) / side.blur_m * Eigen::Vector2d(1, beam.along_m);
       g += J / (beam.is_hit ? p_hit : p_hit - 1.0);
       H += J * J.transpose() / (p_hit * (1.0 - p_hit));

@@ -67,14 +67,13 @@ class BlurredRectangle {
         sine_(std::sin(at.pose.angle_rad)),
         across_((half_m_[0] + half_m_[1]) * per_blur.x()),
         upright_((half_m_[2] + half_m_[3]) * per_blur.y()),
-        log_expected_(std::log(1.0 - model.outlier_share / 2)),
-        log_stray_(std::log(model.outlier_share / 2)) {}
+        log_far_{{{std::log(1.0 - model.stray_hits), std::log(model.stray_hits)},
+                  {std::log(model.stray_misses), std::log(1.0 - model.stray_misses)}}} {}
 
   /// Visits the beams near a side. Returns the log-likelihood of all others.
   template <typename Visit>
   double ForEachNear(const std::vector<OutlineBeam>& beams, Visit visit) const {
-    std::size_t num_expected = 0;
-    std::size_t num_stray = 0;
+    std::array<std::array<std::size_t, 2>, 2> num_far{};
     for (const OutlineBeam& beam : beams) {
       const double dx_m = beam.position_m.x() - centre_m_.x();
       const double dy_m = beam.position_m.y() - centre_m_.y();
@@ -86,7 +85,7 @@ class BlurredRectangle {
       const double bottom = (half_m_[3] + y_m) * per_blur.y();
       const double least = std::min(std::min(right, left), std::min(top, bottom));
       if (std::abs(least) > kFlat) {
-        ++((least > 0) == beam.is_hit ? num_expected : num_stray);
+        ++num_far[least > 0][beam.is_hit];
         continue;
       }
       NearBeam near{x_m, y_m, beam.is_hit, {}, {}, {}, {}};
@@ -94,8 +93,14 @@ class BlurredRectangle {
       upright_.At(top, &near.top, &near.bottom);
       visit(near);
     }
-    return static_cast<double>(num_expected) * log_expected_ +
-           static_cast<double>(num_stray) * log_stray_;
+    double log_likelihood = 0.0;
+    for (const std::size_t is_inside : {0U, 1U}) {
+      for (const std::size_t is_hit : {0U, 1U}) {
+        log_likelihood +=
+            static_cast<double>(num_far[is_inside][is_hit]) * log_far_[is_inside][is_hit];
+      }
+    }
+    return log_likelihood;
   }
 
   const Eigen::Vector2d stretch;
@@ -109,8 +114,7 @@ class BlurredRectangle {
   double sine_;
   OppositeSides across_;
   OppositeSides upright_;
-  double log_expected_;
-  double log_stray_;
+  std::array<std::array<double, 2>, 2> log_far_;  // of a beam: inside or not, a hit or not
 };
 
 /// The logarithm of a product of many probabilities, taken of many at once.
@@ -187,10 +191,10 @@ Eigen::Matrix3d OutlineFit::PoseCovariance() const {
 double OutlineLogLikelihood(const std::vector<OutlineBeam>& beams,
                             const OutlineModel& model,
                             const OutlineFit& at) {
-  const double keep = 1.0 - model.outlier_share;
+  const double keep = 1.0 - model.stray_hits - model.stray_misses;
   LogProduct near_sides;
   const double others = BlurredRectangle(model, at).ForEachNear(beams, [&](const NearBeam& beam) {
-    const double p_hit = model.outlier_share / 2 + keep * beam.Inside();
+    const double p_hit = model.stray_hits + keep * beam.Inside();
     near_sides.Add(beam.is_hit ? p_hit : 1.0 - p_hit);
   });
   return LogPrior(model, at) + others + near_sides.Value();
@@ -205,7 +209,7 @@ OutlineFit EvaluateOutline(const std::vector<OutlineBeam>& beams,
 OutlineSlope DifferentiateOutline(const std::vector<OutlineBeam>& beams,
                                   const OutlineModel& model,
                                   const OutlineFit& at) {
-  const double keep = 1.0 - model.outlier_share;
+  const double keep = 1.0 - model.stray_hits - model.stray_misses;
   const BlurredRectangle rectangle(model, at);
   const double bx = rectangle.per_blur.x();
   const double by = rectangle.per_blur.y();
@@ -213,7 +217,7 @@ OutlineSlope DifferentiateOutline(const std::vector<OutlineBeam>& beams,
   SlopeSums sums;
   const double others = rectangle.ForEachNear(beams, [&](const NearBeam& beam) {
     const double kept = keep * beam.Inside();
-    const double p_hit = model.outlier_share / 2 + kept;
+    const double p_hit = model.stray_hits + kept;
     near_sides.Add(beam.is_hit ? p_hit : 1.0 - p_hit);
     // d ln(kept) / d (distance inside each side); then the centre and the angle move q by -(1, 0),
     // -(0, 1) and (y, -x).

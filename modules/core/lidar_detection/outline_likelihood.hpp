@@ -17,6 +17,12 @@ struct OutlineBeam {
   bool is_hit = false;  ///< The return lies on the plane; otherwise clearly behind it.
 };
 
+/// Where a beam would have met the plane that ended in front of it.
+struct BlockedBeam {
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  double before_m = 0.0;  ///< How far from the plane it ended.
+};
+
 /// A rectangle in the plane.
 struct RectanglePose {
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
@@ -27,8 +33,8 @@ struct RectanglePose {
 };
 
 /// Probability that a beam hits: the unit step at each side of the rectangle, blurred by the beam's
-/// footprint, times a share of beams that tell nothing:
-///     p = outlier_share / 2 + (1 - outlier_share) * prod_k L((m_k + grow_k) / blur_k),
+/// footprint, but for a share of beams that hit beyond or miss inside:
+///     p = stray_hits + (1 - stray_hits - stray_misses) * prod_k L((m_k + grow_k) / blur_k),
 ///     L(t) = 1 / (1 + e^-t),  blur_k = blur_m * stretch_k,
 ///     grow_k = spill * stretch_k + thickness * lean_k
 /// with m_k the distance inside side k. Two things make the board look larger than it is:
@@ -44,7 +50,9 @@ struct OutlineModel {
   double width_m = 0.0;
   double height_m = 0.0;
   double blur_m = 0.01;
-  double outlier_share = 0.02;
+  /// Beams that hit beyond the rectangle: more where things may touch it in its plane...
+  double stray_hits = 0.01;
+  double stray_misses = 0.01;  ///< ...and that miss inside: the board has no holes.
   double spill_m = 0.0;  ///< Expected, with 1 sigma.
   double spill_sigma_m = 0.002;
   double thickness_m = 0.0;  ///< Expected, with 1 sigma.

@@ -28,7 +28,7 @@ void PatchView::Classify(const PlaneFrame& frame, double band_m) {
   const double mixed_m = 2 * band_m;
   outline_.clear();
   outline_.reserve(beams_.size());
-  blocked_m_.clear();
+  blocked_.clear();
   hits_.clear();
   const PlaneFit& plane = frame.plane;
   const double offset_m = plane.normal.dot(plane.point_m);
@@ -49,7 +49,7 @@ void PatchView::Classify(const PlaneFrame& frame, double band_m) {
     } else if (behind_m > mixed_m) {
       outline_.push_back({position_m, false});
     } else if (behind_m < 0) {
-      blocked_m_.push_back(position_m);
+      blocked_.push_back({position_m, -behind_m});
     }
   }
 }

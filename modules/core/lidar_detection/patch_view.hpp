@@ -38,8 +38,8 @@ class PatchView {
   void Classify(const PlaneFrame& frame, double band_m);
 
   const std::vector<OutlineBeam>& Outline() const { return outline_; }
-  /// Where beams that end in front of the plane would have met it.
-  const std::vector<Eigen::Vector2d>& BlockedM() const { return blocked_m_; }
+  /// The beams that end in front of the plane.
+  const std::vector<BlockedBeam>& Blocked() const { return blocked_; }
   const LidarBeam& Beam(std::size_t i) const { return beams_[i]; }
 
   /// The hits whose points lie in the rectangle, grown by `margin_m`: indices for Beam().
@@ -54,7 +54,7 @@ class PatchView {
   double radius_m_;
   std::vector<LidarBeam> beams_;
   std::vector<OutlineBeam> outline_;
-  std::vector<Eigen::Vector2d> blocked_m_;
+  std::vector<BlockedBeam> blocked_;
   std::vector<std::size_t> hits_;
 };
 

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "core/lidar_detection/board_bend.hpp"
+#include "core/lidar_detection/detection_tolerances.hpp"
 #include "core/lidar_detection/outline_doubt.hpp"
 
 namespace voqcal {
@@ -31,12 +32,6 @@ std::string SideInView(const Eigen::Vector3d& direction_lidar, const Eigen::Vect
   const Eigen::Vector3d up = ray.cross(left);
   const double angle_rad = std::atan2(direction_lidar.dot(up), direction_lidar.dot(left));
   return kNames[static_cast<std::size_t>(std::lround(angle_rad / kEighth) + 8) % 8];
-}
-
-/// Of the hits from each other, in the mean.
-double SpacingM(const Measurement& m) {
-  const auto num = static_cast<double>(std::max(m.board_hits.size(), kMinBoardHits));
-  return std::sqrt(m.model.width_m * m.model.height_m / num);
 }
 
 /// Whether the sensor looks past each edge, as far as a few beams need.
@@ -71,78 +66,92 @@ std::string SideOf(const Measurement& m, std::size_t edge) {
   return SideInView(outward_lidar, T_lidar_board.translation());
 }
 
-}  // namespace
-
-std::optional<NoLidarBoard> OpenSide(const Measurement& m,
-                                     const BeamIndex& beams,
-                                     const std::array<OutlineEdge, 4>& edges,
-                                     const Agreement& agreement,
-                                     double slack) {
-  constexpr double kMaxShortM = 0.05;   // hits of a closed outline come so near its edge...
-  constexpr double kMaxSpacings = 1.5;  // ...or as near as the beams are to each other
-  const double max_short_m = std::max(kMaxShortM, kMaxSpacings * SpacingM(m));
-  const std::array<bool, 4> is_covered = CoveredPast(m, beams);
-  const bool is_cropped = IsCropped(edges);
-  const std::optional<std::size_t> edge =
-      OpenEdge(edges,
-               is_cropped ? std::array<bool, 4>{true, true, true, true} : is_covered,
-               agreement,
-               max_short_m,
-               slack);
-  if (!edge) return {};
-  const LidarBoardMiss unhidden =
-      is_covered[*edge] ? LidarBoardMiss::kGap : LidarBoardMiss::kCutOff;
-  const bool is_hidden = IsHidden(m.view.BlockedM(), m.model, m.outline.pose, *edge);
-  return NoLidarBoard{is_hidden ? LidarBoardMiss::kHidden : unhidden, SideOf(m, *edge)};
+NoLidarBoard OpenAt(const Measurement& m, std::size_t side) {
+  switch (m.sides[side].view) {
+    case SideView::kJoined:
+      return {LidarBoardMiss::kJoined, SideOf(m, side)};
+    case SideView::kHidden:
+      return {LidarBoardMiss::kHidden, SideOf(m, side)};
+    case SideView::kCutOff:
+      return {LidarBoardMiss::kCutOff, SideOf(m, side)};
+    case SideView::kMeasured:
+    case SideView::kGap:
+      break;
+  }
+  return {LidarBoardMiss::kGap, SideOf(m, side)};
 }
 
-std::optional<NoLidarBoard> UnprovenSide(const Measurement& m) {
-  constexpr double kNearM = 0.15;
-  constexpr double kFarM = 0.4;  // scan lines may be so far apart
-  constexpr int kMinBeams = 3;   // fewer are stray
-  constexpr int kMinPartsShown = 2;
-  const auto look = [&m](double past_m) {
-    return LookPastEdges(m.view.Outline(), m.view.BlockedM(), m.model, m.outline.pose, past_m);
-  };
-  const std::array<PastEdge, 4> near = look(kNearM);
-  const std::array<PastEdge, 4> far = look(kFarM);
+/// The side that hits come up to least.
+std::size_t LeastReached(const Measurement& m) {
+  const auto least = std::min_element(
+      m.sides.begin(), m.sides.end(), [](const SideEvidence& a, const SideEvidence& b) {
+        return a.reach_m < b.reach_m;
+      });
+  return static_cast<std::size_t>(least - m.sides.begin());
+}
+
+}  // namespace
+
+std::array<bool, 4> ToldSides(const Measurement& m,
+                              const BeamIndex& beams,
+                              const std::array<OutlineEdge, 4>& edges) {
+  const bool is_cropped = IsCropped(edges);
+  const std::array<bool, 4> is_covered = CoveredPast(m, beams);
+  const double max_short_m = std::max(kMaxShortM, kMaxShortSpacings * SpacingM(m));
+  std::array<bool, 4> is_told{};
   for (std::size_t i = 0; i < 4; ++i) {
-    const bool is_near_seen = near[i].num_misses + near[i].num_blocked > 0;
-    const PastEdge& past = is_near_seen ? near[i] : far[i];
-    if (past.num_blocked >= kMinBeams && past.num_blocked > past.num_misses &&
-        past.num_parts_shown < kMinPartsShown) {
-      return NoLidarBoard{LidarBoardMiss::kHidden, SideOf(m, i)};
-    }
-    if (!is_near_seen && 2 * past.num_parts_hit >= PastEdge::kNumParts) {
-      return NoLidarBoard{LidarBoardMiss::kSizeMismatch, {}};
-    }
+    const SideEvidence& side = m.sides[i];
+    const bool is_last_seen = side.view == SideView::kCutOff && -side.reach_m < max_short_m;
+    is_told[i] = side.view == SideView::kMeasured || (is_last_seen && (is_cropped || is_covered[i]));
   }
-  return {};
+  return is_told;
 }
 
 bool HasRightSize(const Measurement& m,
                   const std::array<OutlineEdge, 4>& edges,
                   const std::array<double, 4>& measured_m,
-                  const std::array<double, 4>& true_m) {
-  // In halls full of crates and doors, of a thousand boards each way of scanning, looser limits
-  // take more of these for the board, and tighter ones lose more boards (voqcal_figures
-  // lidar-detection).
-  constexpr LengthTolerance kOfOne{0.03, 4.0, 0.15};
-  constexpr LengthTolerance kOfMean{0.03, 1.5, 0.08};
-  if (!AreLengthsRight(measured_m, edges, true_m, kOfOne, kOfMean)) return false;
+                  const std::array<double, 4>& true_m,
+                  const std::array<bool, 4>& is_told) {
+  const bool is_whole = std::all_of(is_told.begin(), is_told.end(), [](bool told) { return told; });
+  const LengthTolerance& of_one = is_whole ? kLengthOfOne : kLengthOfPair;
+  const LengthTolerance& of_mean = is_whole ? kLengthOfMean : kLengthOfPair;
+  if (!AreLengthsRight(measured_m, edges, true_m, is_told, of_one, of_mean)) return false;
   // So sharp that no other size need be tried.
   constexpr LengthTolerance kSharpOfOne{0.03, 0.0, 0.03};
   constexpr LengthTolerance kSharpOfMean{0.02, 0.0, 0.02};
-  if (AreLengthsRight(measured_m, edges, true_m, kSharpOfOne, kSharpOfMean)) return true;
+  if (AreLengthsRight(measured_m, edges, true_m, is_told, kSharpOfOne, kSharpOfMean)) return true;
   // Edge i and the one opposite reach from the edge before to the edge after. Without beams past
   // these the hits next to them would always favour a larger size.
   Eigen::Vector2d grows;
   for (std::size_t i = 0; i < 2; ++i) {
+    const SideView before = m.sides[(i + 3) % 4].view;
+    const SideView after = m.sides[i + 1].view;
     const double error_m = measured_m[i] + measured_m[i + 2] - true_m[i] - true_m[i + 2];
-    const bool may_grow = IsClosed(edges[(i + 3) % 4]) && IsClosed(edges[i + 1]);
-    grows[static_cast<Eigen::Index>(i)] = error_m < 0 ? -1.0 : (may_grow ? 1.0 : 0.0);
+    const bool is_pair = is_told[(i + 3) % 4] && is_told[i + 1];
+    const bool may_grow = before == SideView::kMeasured && after == SideView::kMeasured;
+    grows[static_cast<Eigen::Index>(i)] =
+        !is_pair ? 0.0 : (error_m < 0 ? -1.0 : (may_grow ? 1.0 : 0.0));
   }
-  return !HasRivalSize(m.view.Outline(), m.model, m.outline, grows);
+  return !HasRivalSize(m.telling, m.model, m.outline, grows);
+}
+
+std::optional<NoLidarBoard> Doubt(const Measurement& m,
+                                  const Agreement& agreement,
+                                  const std::array<bool, 4>& is_told) {
+  const auto num_told = std::count(is_told.begin(), is_told.end(), true);
+  const auto open = static_cast<std::size_t>(
+      std::find(is_told.begin(), is_told.end(), false) - is_told.begin());
+  if (num_told == 4) {
+    const double min_covered = agreement.empty <= 1.0 - kMinCovered ? kMinCoveredOfThree : kMinCovered;
+    if (agreement.covered >= min_covered) return {};
+    return OpenAt(m, LeastReached(m));
+  }
+  if (num_told < 3) return OpenAt(m, open);
+  // A strip of the board's width may be anything.
+  constexpr int kMaxPartsJoined = 5;
+  const bool is_strip = m.sides[open].Count(SideEvidence::Past::kPlane) > kMaxPartsJoined;
+  if (is_strip || agreement.covered < kMinCoveredOfThree) return OpenAt(m, open);
+  return {};
 }
 
 std::optional<NoLidarBoard> Bend(const Measurement& m,
@@ -169,7 +178,7 @@ bool IsLoose(const Measurement& m, double max_sigma_m) {
   const double sigma_m = CornerSigmaM(m.outline, m.model);
   if (sigma_m > max_sigma_m) return true;
   const double may_turn = m.board_hits.size() < kFewHits ? kMayTurnIfFew : kMayTurn;
-  return sigma_m > may_turn * max_sigma_m && HasTurnedRival(m.view.Outline(), m.model, m.outline);
+  return sigma_m > may_turn * max_sigma_m && HasTurnedRival(m.telling, m.model, m.outline);
 }
 
 }  // namespace voqcal

@@ -12,24 +12,24 @@
 
 namespace voqcal {
 
-/// The side on which the outline is open, and what is there instead; nothing if it is closed.
-/// `slack` above 1 loosens it for a rough fit.
-std::optional<NoLidarBoard> OpenSide(const Measurement& m,
-                                     const BeamIndex& beams,
-                                     const std::array<OutlineEdge, 4>& edges,
-                                     const Agreement& agreement,
-                                     double slack);
+/// Which sides tell where the board ends: those that are measured, and those that hits come up to
+/// where beams past them would come back from nothing: the sky, or what a cropped cloud left out.
+std::array<bool, 4> ToldSides(const Measurement& m,
+                              const BeamIndex& beams,
+                              const std::array<OutlineEdge, 4>& edges);
 
-/// The side past which what is seen does not prove that the board ends there: it may go on behind
-/// what stands before the plane, or the next scan line still meets the plane; nothing if there is
-/// none.
-std::optional<NoLidarBoard> UnprovenSide(const Measurement& m);
-
-/// Whether the edges are as long as the board's, as far as the beams tell.
+/// Whether what was measured has the board's size: the edges between two sides that are told.
 bool HasRightSize(const Measurement& m,
                   const std::array<OutlineEdge, 4>& edges,
                   const std::array<double, 4>& measured_m,
-                  const std::array<double, 4>& true_m);
+                  const std::array<double, 4>& true_m,
+                  const std::array<bool, 4>& is_told);
+
+/// Why what was measured may be something else, naming the first side that is open; nothing if it
+/// is the board.
+std::optional<NoLidarBoard> Doubt(const Measurement& m,
+                                  const Agreement& agreement,
+                                  const std::array<bool, 4>& is_told);
 
 /// That the board is certainly bent, and by how much; nothing if it may be flat.
 std::optional<NoLidarBoard> Bend(const Measurement& m,

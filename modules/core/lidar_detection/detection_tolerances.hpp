@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/lidar_detection/outline_checks.hpp"
+
+namespace voqcal {
+
+// What decides whether a patch is the board. "Halls" are those of `voqcal_figures lidar-detection`,
+// "field" the recordings of other people.
+
+/// Fewer hits cannot measure a board: of 30 the centre is off by 30 mm and more.
+constexpr std::size_t kMinBoardHits = 30;
+
+/// Beams so near a side may be partly of the board: hits end 5 mm past it, at a slant 10 mm, and
+/// offsets between scan lines move them by as much again.
+constexpr double kSideMarginM = 0.03;
+/// Just past a side, and as far as scan lines may be apart.
+constexpr double kJustPastM = 0.15;
+constexpr double kFarPastM = 0.4;
+/// Hits of a whole side come so near it, or so many of their spacings.
+constexpr double kMaxShortM = 0.05;
+constexpr double kMaxShortSpacings = 1.5;
+
+/// Of a beam, in nats. Boards of the field leave 0.03; windows, doors and people 0.3 and more.
+constexpr double kMaxUnexplained = 0.25;
+/// Of a first, rough fit.
+constexpr double kMaxUnexplainedRoughly = 0.5;
+
+/// How far the distance of two measured sides may be off. In halls full of crates and doors looser
+/// ones take more of these for the board, and tighter ones lose more boards.
+constexpr LengthTolerance kLengthOfOne{0.03, 4.0, 0.15};
+constexpr LengthTolerance kLengthOfMean{0.03, 1.5, 0.08};
+/// Where one pair of sides alone has to tell the board from other things.
+constexpr LengthTolerance kLengthOfPair{0.02, 1.5, 0.03};
+
+/// Share of the 4 x 4 fields with hits: of a board that is measured on three sides, whose fourth may
+/// be hidden; and of one where less is measured.
+constexpr double kMinCoveredOfThree = 0.6;
+constexpr double kMinCovered = 0.8;
+
+}  // namespace voqcal

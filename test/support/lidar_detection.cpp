@@ -57,7 +57,7 @@ void RemoveTwins(Props* props) {
   boxes.erase(std::remove_if(boxes.begin(), boxes.end(), is_twin), boxes.end());
 }
 
-Room HallOf(std::uint32_t seed) {
+Props ClutterOf(std::uint32_t seed) {
   ClutterOptions clutter;
   clutter.num_people = 5;
   clutter.num_tripods = 4;
@@ -66,7 +66,7 @@ Room HallOf(std::uint32_t seed) {
   clutter.second_board_scale = SecondBoardScale(KeyedNoise(seed, NoiseUse::kStops, -1));
   Props props = DrawClutter(clutter, Board(), Hall(), seed);
   RemoveTwins(&props);
-  return Room(Hall(), props);
+  return props;
 }
 
 // Sees, clear of things and unhidden, every part of the board.
@@ -124,6 +124,7 @@ void Judge(const LidarBoard& found, LidarSighting* sighting) {
       RotationAngleBetween(TransformFromPose(pose).linear(), truth.linear()),
       RotationAngleBetween(TransformFromPose(TurnedByHalf(pose)).linear(), truth.linear()));
   sighting->found = pose;
+  sighting->num_measured_sides = NumMeasuredSides(found);
   sighting->centre_error_m = centre_error_m.norm();
   sighting->normal_error_rad = AngleBetween(pose.normal, truth.linear().col(2));
   const bool is_right = sighting->centre_error_m < kWrongCentreM && angle_rad < kWrongAngleRad;
@@ -159,15 +160,64 @@ std::string LidarSighting::Line() const {
   return text.str();
 }
 
+namespace {
+
+/// What touches the board, beside what stands in the hall.
+Props PropsAt(const LidarDetectionOptions& options,
+              const Eigen::Isometry3d& T_lidar_board,
+              std::uint32_t seed,
+              int board) {
+  const auto drawn_by = seed * 100 + static_cast<std::uint32_t>(board);
+  const std::size_t edge = ContactEdge(T_lidar_board, Board(), drawn_by);
+  Props props;
+  if (options.contact) {
+    props.Append(ContactProps(*options.contact, edge, T_lidar_board, Board()));
+  }
+  for (int i = 0; i < options.num_joined; ++i) {
+    const std::size_t side = (edge + static_cast<std::size_t>(i)) % 4;
+    props.Append(ContactProps(BoardContact::kDoor, side, T_lidar_board, Board()));
+  }
+  return props;
+}
+
+/// The truth, off by chance as far as it says.
+std::optional<BoardPrior> PriorOf(const LidarDetectionOptions& options,
+                                  const Eigen::Isometry3d& T_lidar_board,
+                                  std::uint32_t seed,
+                                  int board) {
+  if (!options.has_prior) return {};
+  const KeyedNoise noise(seed, NoiseUse::kStops, 1000 + board);
+  BoardPrior prior;
+  prior.covariance.diagonal() << Eigen::Vector3d::Constant(options.prior_sigma_rad).cwiseAbs2(),
+      Eigen::Vector3d::Constant(options.prior_sigma_m).cwiseAbs2();
+  Eigen::Vector3d turn_rad;
+  Eigen::Vector3d shift_m;
+  for (int i = 0; i < 3; ++i) {
+    const auto [first, second] = noise.Normals(static_cast<std::uint64_t>(i));
+    turn_rad[i] = options.prior_sigma_rad * first;
+    shift_m[i] = options.prior_sigma_m * second;
+  }
+  prior.T_lidar_board = T_lidar_board;
+  prior.T_lidar_board.linear() =
+      Eigen::AngleAxisd(turn_rad.norm(), turn_rad.normalized()) * T_lidar_board.linear();
+  prior.T_lidar_board.translation() += shift_m;
+  return prior;
+}
+
+}  // namespace
+
 std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options,
                                             const LidarBoardOptions& detector) {
   std::vector<LidarSighting> sightings;
   SimulationOptions simulation;
   simulation.scan.pattern = options.pattern;
+  const bool is_touched = options.contact.has_value() || options.num_joined > 0;
   while (static_cast<int>(sightings.size()) < options.num_sweeps) {
     simulation.seed = options.seed + static_cast<std::uint32_t>(sightings.size()) / kBoardsPerHall;
-    const Room room = HallOf(simulation.seed);
-    const LidarSimulator lidar(simulation, Board(), room);
+    const Props clutter = ClutterOf(simulation.seed);
+    const Room room(Hall(), clutter);
+    std::optional<LidarSimulator> lidar;
+    if (!is_touched) lidar.emplace(simulation, Board(), room);
     for (int board = 0; board < kBoardsPerHall; ++board) {
       if (static_cast<int>(sightings.size()) == options.num_sweeps) break;
       const std::int64_t frame_us = std::int64_t{100000} * board;
@@ -175,9 +225,15 @@ std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options
       sighting.seed = simulation.seed;
       sighting.board = board;
       sighting.T_lidar_board = DrawBoard(options, room, simulation.seed, board);
-      sighting.hits = lidar.CountBoardHits(sighting.T_lidar_board, frame_us);
-      const auto found =
-          DetectLidarBoard(lidar.Sweep(sighting.T_lidar_board, frame_us), Board(), detector);
+      if (is_touched) {
+        Props props = clutter;
+        props.Append(PropsAt(options, sighting.T_lidar_board, simulation.seed, board));
+        lidar.emplace(simulation, Board(), Room(Hall(), props));
+      }
+      sighting.hits = lidar->CountBoardHits(sighting.T_lidar_board, frame_us);
+      const auto prior = PriorOf(options, sighting.T_lidar_board, simulation.seed, board);
+      const auto found = DetectLidarBoard(
+          lidar->Sweep(sighting.T_lidar_board, frame_us), Board(), detector, nullptr, prior);
       if (found) {
         Judge(found->front(), &sighting);
       } else {

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "core/lidar_detection/lidar_board.hpp"
+#include "core/simulation/board_contact.hpp"
 #include "core/simulation/lidar_simulator.hpp"
 #include "core/simulation/scan_pattern.hpp"
 
@@ -20,6 +22,12 @@ struct LidarDetectionOptions {
   std::uint32_t seed = 1;  ///< Of the first hall; each further one has the next.
   double min_distance_m = 1.5;
   double max_distance_m = 8.0;
+  std::optional<BoardContact> contact;  ///< What touches every board.
+  int num_joined = 0;  ///< Sides along which a leaf in the board's plane begins, as well.
+  /// The board is expected: at the truth, off by as much as the prior says (1 sigma).
+  bool has_prior = false;
+  double prior_sigma_rad = 0.015;
+  double prior_sigma_m = 0.02;
 };
 
 enum class SightingVerdict { kRight, kWrong, kMissed };
@@ -34,7 +42,8 @@ struct LidarSighting {
   BoardHits hits;
   SightingVerdict verdict = SightingVerdict::kMissed;
   std::string reason;  ///< Of a miss.
-  BoardPose found;     ///< What was taken for the board, if anything was.
+  int num_measured_sides = 0;  ///< Of what was taken for the board.
+  BoardPose found;             ///< What was taken for the board, if anything was.
   double centre_error_m = kUnmeasured;
   double normal_error_rad = kUnmeasured;
   /// Squared errors by their covariance, over their number of dimensions: 1 in the mean if honest.
@@ -48,7 +57,7 @@ struct LidarSighting {
 };
 
 /// Boards in any attitude up to 50 degrees from facing the lidar, each wholly within its view,
-/// hidden by nothing and 15 cm or more from anything. Wrong: the first candidate's centre is off by
+/// hidden by nothing and 15 cm or more from anything but what is asked to touch it. Wrong: the first candidate's centre is off by
 /// more than 10 cm, or its axes by more than 10 degrees (but for half a turn).
 std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options,
                                             const LidarBoardOptions& detector);

@@ -31,8 +31,15 @@ constexpr double kMaxUnexplainedRoughly = 0.5;
 /// ones take more of these for the board, and tighter ones lose more boards.
 constexpr LengthTolerance kLengthOfOne{0.03, 4.0, 0.15};
 constexpr LengthTolerance kLengthOfMean{0.03, 1.5, 0.08};
-/// Where one pair of sides alone has to tell the board from other things.
-constexpr LengthTolerance kLengthOfPair{0.02, 1.5, 0.03};
+/// Where three sides were measured: one pair of them, whose lines may tilt a little more. Upright
+/// boards of the field that few level scan lines meet are off by up to 40 mm in the mean.
+constexpr LengthTolerance kPairOfOne{0.06, 4.0, 0.15};
+constexpr LengthTolerance kPairOfMean{0.03, 1.5, 0.05};
+/// Where the board is expected, only another thing is refused: stated sizes of plates in the field
+/// are off by up to 50 mm.
+constexpr LengthTolerance kExpectedOfOne{0.15, 0.0, 0.15};
+constexpr LengthTolerance kExpectedOfMean{0.08, 0.0, 0.08};
+constexpr double kMaxUnexplainedIfExpected = 0.4;
 
 /// Share of the 4 x 4 fields with hits: of a board that is measured on three sides, whose fourth may
 /// be hidden; and of one where less is measured.

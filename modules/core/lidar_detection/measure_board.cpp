@@ -22,6 +22,7 @@
 #include "core/lidar_detection/outline_fit.hpp"
 #include "core/lidar_detection/patch_view.hpp"
 #include "core/lidar_detection/refusals.hpp"
+#include "core/median.hpp"
 
 namespace voqcal {
 namespace {
@@ -98,6 +99,18 @@ std::vector<Eigen::Vector3d> EvenlyShaded(const Measurement& m,
   return positions_m;
 }
 
+/// How far from the plane its own returns lie: what stands out farther is something else, a post
+/// behind it or a hand.
+double NoiseBandM(const std::vector<Eigen::Vector3d>& points_m, const PlaneFit& plane) {
+  constexpr double kMedianToSigma = 1.4826;  // of a normal distribution
+  constexpr double kSigmas = 5.0;
+  constexpr double kLeastM = 0.02;  // offsets of single scan lines
+  std::vector<double> distances_m;
+  distances_m.reserve(points_m.size());
+  for (const Eigen::Vector3d& p_m : points_m) distances_m.push_back(std::abs(plane.DistanceM(p_m)));
+  return std::max(kLeastM, kSigmas * kMedianToSigma * Median(distances_m));
+}
+
 /// The plane of the points in the outline, and where the beams meet it. False if too few points are
 /// left.
 bool RefinePlane(const PointCloud& cloud_lidar_m, Measurement* m) {
@@ -110,6 +123,7 @@ bool RefinePlane(const PointCloud& cloud_lidar_m, Measurement* m) {
   const Eigen::Vector3d width_axis = T_lidar_board.linear().col(0);
   m->positions_m = EvenlyShaded(*m, m->frame.plane, cloud_lidar_m);
   PlaneFit plane = FitPlaneRobustly(m->positions_m, m->frame.plane, kPlaneScaleM);
+  m->hit_band_m = std::min(m->hit_band_m, NoiseBandM(m->positions_m, plane));
   plane.point_m = centre_m - plane.DistanceM(centre_m) * plane.normal;
   m->frame = PlaneFrame(plane);
   m->view.Classify(m->frame, m->hit_band_m);
@@ -246,21 +260,28 @@ std::optional<NoLidarBoard> FitPlaneAndOutline(const PointCloud& cloud_lidar_m, 
   return {};
 }
 
-/// What speaks against the patch, or the board at it.
+/// What speaks against the patch, or the board at it. Where it is expected, only what contradicts
+/// it does.
 Expected<MeasuredBoard, NoLidarBoard> Decide(const Measurement& m,
+                                             bool is_expected,
                                              const BeamIndex& beams,
                                              const PointCloud& cloud_lidar_m,
                                              const BoardSpec& board,
                                              const LidarBoardOptions& options) {
   const Agreement agreement = AgreementOf(m);
-  if (!agreement.IsBoardLike() || m.outline.Unexplained() > kMaxUnexplained)
+  const double max_unexplained = is_expected ? kMaxUnexplainedIfExpected : kMaxUnexplained;
+  if (!agreement.IsBoardLike() || m.outline.Unexplained() > max_unexplained)
     return Because(LidarBoardMiss::kSizeMismatch);
   if (IsSeenFlat(m)) return Because(LidarBoardMiss::kFlat);
   const std::array<OutlineEdge, 4> edges = MeasureEdges(m.telling, m.model, m.outline.pose);
   const std::array<double, 4> lengths_m = EdgeLengthsM(edges, m.model);
   const std::array<bool, 4> is_told = ToldSides(m, beams, edges);
-  if (!HasRightSize(m, edges, lengths_m, board.EdgeLengthsM(), is_told))
-    return Because(LidarBoardMiss::kSizeMismatch);
+  const std::array<double, 4> true_m = board.EdgeLengthsM();
+  const bool is_right_size =
+      is_expected
+          ? AreLengthsRight(lengths_m, edges, true_m, is_told, kExpectedOfOne, kExpectedOfMean)
+          : HasRightSize(m, edges, lengths_m, true_m, is_told);
+  if (!is_right_size) return Because(LidarBoardMiss::kSizeMismatch);
   if (auto bent = Bend(m, cloud_lidar_m, options.max_bend_m)) return *bent;
   std::optional<NoLidarBoard> doubt = Doubt(m, agreement, is_told);
   if (!doubt && IsLoose(m, options.max_corner_sigma_m)) doubt = Because(LidarBoardMiss::kLoose);
@@ -324,7 +345,7 @@ Expected<MeasuredBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
   if (auto none = FitPlaneAndOutline(cloud_lidar_m, &m)) return *none;
   m.outline.pose = Upright(m.frame, m.outline.pose);
   if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
-  return Decide(m, beams, cloud_lidar_m, board, options);
+  return Decide(m, false, beams, cloud_lidar_m, board, options);
 }
 
 Expected<MeasuredBoard, NoLidarBoard> MeasureExpectedBoard(const BoardPrior& prior,
@@ -350,7 +371,7 @@ Expected<MeasuredBoard, NoLidarBoard> MeasureExpectedBoard(const BoardPrior& pri
   m.outline.thickness_m = m.model.thickness_m;
   if (auto none = FitPlaneAndOutline(cloud_lidar_m, &m)) return *none;
   if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
-  auto decided = Decide(m, beams, cloud_lidar_m, board, options);
+  auto decided = Decide(m, true, beams, cloud_lidar_m, board, options);
   if (decided && !FitsIn(decided->board.pose, prior)) return Because(LidarBoardMiss::kNoPlane);
   return decided;
 }

@@ -113,9 +113,10 @@ bool HasRightSize(const Measurement& m,
                   const std::array<double, 4>& true_m,
                   const std::array<bool, 4>& is_told) {
   const bool is_whole = std::all_of(is_told.begin(), is_told.end(), [](bool told) { return told; });
-  const LengthTolerance& of_one = is_whole ? kLengthOfOne : kLengthOfPair;
-  const LengthTolerance& of_mean = is_whole ? kLengthOfMean : kLengthOfPair;
+  const LengthTolerance& of_one = is_whole ? kLengthOfOne : kPairOfOne;
+  const LengthTolerance& of_mean = is_whole ? kLengthOfMean : kPairOfMean;
   if (!AreLengthsRight(measured_m, edges, true_m, is_told, of_one, of_mean)) return false;
+  if (!is_whole) return true;  // one pair cannot tell another size from a spill
   // So sharp that no other size need be tried.
   constexpr LengthTolerance kSharpOfOne{0.03, 0.0, 0.03};
   constexpr LengthTolerance kSharpOfMean{0.02, 0.0, 0.02};
@@ -127,10 +128,8 @@ bool HasRightSize(const Measurement& m,
     const SideView before = m.sides[(i + 3) % 4].view;
     const SideView after = m.sides[i + 1].view;
     const double error_m = measured_m[i] + measured_m[i + 2] - true_m[i] - true_m[i + 2];
-    const bool is_pair = is_told[(i + 3) % 4] && is_told[i + 1];
     const bool may_grow = before == SideView::kMeasured && after == SideView::kMeasured;
-    grows[static_cast<Eigen::Index>(i)] =
-        !is_pair ? 0.0 : (error_m < 0 ? -1.0 : (may_grow ? 1.0 : 0.0));
+    grows[static_cast<Eigen::Index>(i)] = error_m < 0 ? -1.0 : (may_grow ? 1.0 : 0.0);
   }
   return !HasRivalSize(m.telling, m.model, m.outline, grows);
 }

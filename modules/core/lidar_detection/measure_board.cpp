@@ -59,6 +59,14 @@ Eigen::Vector2d LeanOf(const PlaneFrame& frame, const RectanglePose& pose) {
   return ray_board.head<2>() / std::abs(ray_board.z());
 }
 
+/// The cloud's axis that is most in the plane: it turns with the cloud.
+Eigen::Vector3d AxisAcross(const PlaneFit& plane, const BeamIndex& beams) {
+  const Eigen::Vector3d along_normal = (beams.R_axes_lidar() * plane.normal).cwiseAbs();
+  Eigen::Index axis = 0;
+  along_normal.minCoeff(&axis);
+  return beams.R_axes_lidar().row(axis).transpose();
+}
+
 /// The beams around a patch, on its own plane.
 Measurement Begin(const PlanarPatch& patch,
                   const BeamIndex& beams,
@@ -69,7 +77,7 @@ Measurement Begin(const PlanarPatch& patch,
   const double diagonal_m = std::hypot(board.width_m, board.height_m);
   const double band_m = options.beam.hit_band_m;
   Measurement m{
-      PatchView(beams, plane.point_m, diagonal_m), band_m, PlaneFrame(plane), {}, {}, {}, {}, {}, {}};
+      PatchView(beams, plane.point_m, diagonal_m), band_m, PlaneFrame(plane, AxisAcross(plane, beams)), {}, {}, {}, {}, {}, {}};
   m.model = ModelOf(board, options, plane.point_m.norm());
   m.view.Classify(m.frame, band_m);
   return m;
@@ -125,7 +133,7 @@ bool RefinePlane(const PointCloud& cloud_lidar_m, Measurement* m) {
   PlaneFit plane = FitPlaneRobustly(m->positions_m, m->frame.plane, kPlaneScaleM);
   m->hit_band_m = std::min(m->hit_band_m, NoiseBandM(m->positions_m, plane));
   plane.point_m = centre_m - plane.DistanceM(centre_m) * plane.normal;
-  m->frame = PlaneFrame(plane);
+  m->frame = PlaneFrame(plane, m->frame.e1);
   m->view.Classify(m->frame, m->hit_band_m);
   const double angle_rad = std::atan2(m->frame.e2.dot(width_axis), m->frame.e1.dot(width_axis));
   m->outline.pose = {Eigen::Vector2d::Zero(), angle_rad};
@@ -140,10 +148,31 @@ void LookAround(Measurement* m) {
   m->telling = TellingBeams(m->view.Outline(), m->model, m->outline.pose, m->sides);
 }
 
+/// A bar along a whole side, as a frame or an easel has, makes the board look longer; a post or the
+/// ground, which join it in part, tell on which side. What is past that side says nothing then.
+void OpenLengthenedSides(Measurement* m) {
+  const auto num_joined = [m](std::size_t side) {
+    return m->sides[side].Count(SideEvidence::Past::kPlane) +
+           m->sides[side].Count(SideEvidence::Past::kTouch);
+  };
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t opposite = (i + 2) % 4;
+    const bool may_be = m->sides[i].view == SideView::kMeasured && num_joined(i) > 0 &&
+                        m->sides[opposite].view == SideView::kMeasured && num_joined(opposite) == 0;
+    if (!may_be) continue;
+    const auto edges = MeasureEdges(m->telling, m->model, m->outline.pose);
+    if (edges[i].offset_m + edges[opposite].offset_m < kLengthenedM) continue;
+    m->sides[i].view = SideView::kJoined;
+    m->sides[i].past.fill(SideEvidence::Past::kPlane);
+    m->telling = TellingBeams(m->view.Outline(), m->model, m->outline.pose, m->sides);
+  }
+}
+
 /// Takes all the rectangle's points. False if too few are left.
 bool Finish(const PointCloud& cloud_lidar_m, Measurement* m) {
   m->model.lean = LeanOf(m->frame, m->outline.pose);
   LookAround(m);
+  OpenLengthenedSides(m);
   m->outline = EvaluateOutline(m->telling, m->model, m->outline);
   m->outline = SettleOutline(m->telling, m->model, m->outline);
   m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, 0.0);
@@ -255,6 +284,7 @@ std::optional<NoLidarBoard> FitPlaneAndOutline(const PointCloud& cloud_lidar_m, 
   if (!RefinePlane(cloud_lidar_m, m)) return Because(LidarBoardMiss::kNoPlane);
   for (int i = 0; i < 2; ++i) {
     LookAround(m);
+    OpenLengthenedSides(m);
     m->outline = RefineOutline(m->telling, m->model, m->outline.pose);
   }
   return {};

@@ -81,6 +81,13 @@ NoLidarBoard OpenAt(const Measurement& m, std::size_t side) {
   return {LidarBoardMiss::kGap, SideOf(m, side)};
 }
 
+/// Of one side's eight, whatever was concluded from the others.
+int NumPartsOnPlane(const Measurement& m, std::size_t side) {
+  return LookAtSides(
+             m.view.Outline(), m.view.Blocked(), m.model, m.outline.pose, SpacingM(m))[side]
+      .Count(SideEvidence::Past::kPlane);
+}
+
 /// The side that hits come up to least.
 std::size_t LeastReached(const Measurement& m) {
   const auto least = std::min_element(
@@ -148,7 +155,7 @@ std::optional<NoLidarBoard> Doubt(const Measurement& m,
   if (num_told < 3) return OpenAt(m, open);
   // A strip of the board's width may be anything.
   constexpr int kMaxPartsJoined = 5;
-  const bool is_strip = m.sides[open].Count(SideEvidence::Past::kPlane) > kMaxPartsJoined;
+  const bool is_strip = NumPartsOnPlane(m, open) > kMaxPartsJoined;
   if (is_strip || agreement.covered < kMinCoveredOfThree) return OpenAt(m, open);
   return {};
 }

@@ -157,7 +157,8 @@ std::vector<OutlineBeam> TellingBeams(const std::vector<OutlineBeam>& beams,
                                       const std::array<SideEvidence, 4>& sides) {
   const SidePlaces places(model, pose);
   const auto goes_on = [&sides](std::size_t side, std::size_t part) {
-    return sides[side].past[part] == Past::kPlane;
+    const Past past = sides[side].past[part];
+    return past == Past::kPlane || past == Past::kTouch;
   };
   const auto tells = [&](const OutlineBeam& beam) {
     const Eigen::Vector2d q_m = places.ToRectangle(beam.position_m);

@@ -39,7 +39,7 @@ std::array<SideEvidence, 4> LookAtSides(const std::vector<OutlineBeam>& beams,
                                         double spacing_m);
 
 /// The beams that tell of the rectangle: all but those past a part of a side where its plane goes
-/// on, which say nothing of where it ends.
+/// on or something comes up to it, which say nothing of where it ends.
 std::vector<OutlineBeam> TellingBeams(const std::vector<OutlineBeam>& beams,
                                       const OutlineModel& model,
                                       const RectanglePose& pose,

@@ -66,10 +66,22 @@ std::string SideOf(const Measurement& m, std::size_t edge) {
   return SideInView(outward_lidar, T_lidar_board.translation());
 }
 
+/// " (the ground)" where that is likely.
+std::string JoinedTo(const Measurement& m, std::size_t side) {
+  constexpr double kDown = -0.8;
+  const Eigen::Vector2d outward = OutwardOf(side);
+  const double up =
+      TransformOf(m.frame, m.outline.pose).linear().row(2).head<2>().dot(outward);
+  const SideEvidence& at = m.sides[side];
+  const bool is_ground = up < kDown && at.Count(SideEvidence::Past::kTouch) >
+                                           at.Count(SideEvidence::Past::kPlane);
+  return is_ground ? " (the ground)" : "";
+}
+
 NoLidarBoard OpenAt(const Measurement& m, std::size_t side) {
   switch (m.sides[side].view) {
     case SideView::kJoined:
-      return {LidarBoardMiss::kJoined, SideOf(m, side)};
+      return {LidarBoardMiss::kJoined, SideOf(m, side) + JoinedTo(m, side)};
     case SideView::kHidden:
       return {LidarBoardMiss::kHidden, SideOf(m, side)};
     case SideView::kCutOff:

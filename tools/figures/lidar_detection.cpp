@@ -1,6 +1,6 @@
 // lidar-detection: how often the board is found, how often something else is taken for it, and how
-// well errors agree with their covariance; for each scan pattern, among clutter, by range; then with
-// each thing that may touch a board, and by the number of sides that were measured.
+// well errors agree with their covariance; for each scan pattern, among clutter, by range; then
+// with each thing that may touch a board, and by the number of sides that were measured.
 
 #include "support/lidar_detection.hpp"
 
@@ -163,7 +163,8 @@ void RunOpenSides(const Flags& flags) {
       }
     }
   }
-  PrintHead("\nboards that are expected, with one to four sides joined to something in their plane");
+  PrintHead(
+      "\nboards that are expected, with one to four sides joined to something in their plane");
   PrintAsked("", "");
   for (std::size_t i = kNames.size(); i-- > 0;) PrintRow(kNames[i], by_sides[i]);
 }

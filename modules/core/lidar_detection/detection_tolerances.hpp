@@ -45,8 +45,8 @@ constexpr double kMaxUnexplainedIfExpected = 0.4;
 /// 25 mm, a bar along a side by 40 and more.
 constexpr double kLengthenedM = 0.03;
 
-/// Share of the 4 x 4 fields with hits: of a board that is measured on three sides, whose fourth may
-/// be hidden; and of one where less is measured.
+/// Share of the 4 x 4 fields with hits: of a board that is measured on three sides, whose fourth
+/// may be hidden; and of one where less is measured.
 constexpr double kMinCoveredOfThree = 0.6;
 constexpr double kMinCovered = 0.8;
 

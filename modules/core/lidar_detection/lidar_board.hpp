@@ -67,8 +67,8 @@ struct BoardPrior {
 /// Finds the board of known size in one whole sweep: no region of interest, rings or order of
 /// points needed.
 ///
-/// The lidar's frame may be turned anyhow. Scan lines that the sweep does not name are told from its
-/// geometry.
+/// The lidar's frame may be turned anyhow. Scan lines that the sweep does not name are told from
+/// its geometry.
 ///
 /// Without a prior a board counts as found only if its measured sides tell it from other things;
 /// what may be the board, but may be something else, is in the error's `unsure`, best first. With a

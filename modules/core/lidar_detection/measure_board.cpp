@@ -22,7 +22,6 @@
 #include "core/lidar_detection/outline_fit.hpp"
 #include "core/lidar_detection/patch_view.hpp"
 #include "core/lidar_detection/refusals.hpp"
-#include "core/median.hpp"
 
 namespace voqcal {
 namespace {
@@ -76,8 +75,15 @@ Measurement Begin(const PlanarPatch& patch,
   plane.point_m = patch.middle_m - plane.DistanceM(patch.middle_m) * plane.normal;
   const double diagonal_m = std::hypot(board.width_m, board.height_m);
   const double band_m = options.beam.hit_band_m;
-  Measurement m{
-      PatchView(beams, plane.point_m, diagonal_m), band_m, PlaneFrame(plane, AxisAcross(plane, beams)), {}, {}, {}, {}, {}, {}};
+  Measurement m{PatchView(beams, plane.point_m, diagonal_m),
+                band_m,
+                PlaneFrame(plane, AxisAcross(plane, beams)),
+                {},
+                {},
+                {},
+                {},
+                {},
+                {}};
   m.model = ModelOf(board, options, plane.point_m.norm());
   m.view.Classify(m.frame, band_m);
   return m;
@@ -116,7 +122,9 @@ double NoiseBandM(const std::vector<Eigen::Vector3d>& points_m, const PlaneFit& 
   std::vector<double> distances_m;
   distances_m.reserve(points_m.size());
   for (const Eigen::Vector3d& p_m : points_m) distances_m.push_back(std::abs(plane.DistanceM(p_m)));
-  return std::max(kLeastM, kSigmas * kMedianToSigma * Median(distances_m));
+  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
+  std::nth_element(distances_m.begin(), middle, distances_m.end());
+  return std::max(kLeastM, kSigmas * kMedianToSigma * *middle);
 }
 
 /// The plane of the points in the outline, and where the beams meet it. False if too few points are
@@ -143,8 +151,8 @@ bool RefinePlane(const PointCloud& cloud_lidar_m, Measurement* m) {
 
 /// What is past the sides of the rectangle, and which beams tell of it.
 void LookAround(Measurement* m) {
-  m->sides = LookAtSides(
-      m->view.Outline(), m->view.Blocked(), m->model, m->outline.pose, SpacingM(*m));
+  m->sides =
+      LookAtSides(m->view.Outline(), m->view.Blocked(), m->model, m->outline.pose, SpacingM(*m));
   m->telling = TellingBeams(m->view.Outline(), m->model, m->outline.pose, m->sides);
 }
 
@@ -242,8 +250,7 @@ LidarBoard Describe(const Measurement& m,
   for (std::size_t i = 0; i < 4; ++i) {
     const bool is_measured = found.sides[(i + 3) % 4] == SideView::kMeasured &&
                              found.sides[(i + 1) % 4] == SideView::kMeasured;
-    found.edge_lengths_m[i] =
-        is_measured ? lengths_m[i] : std::numeric_limits<double>::quiet_NaN();
+    found.edge_lengths_m[i] = is_measured ? lengths_m[i] : std::numeric_limits<double>::quiet_NaN();
   }
   found.log_likelihood = m.outline.log_likelihood - LogLikelihoodOfChance(m.telling);
   double sum_squares_m2 = 0.0;
@@ -352,8 +359,7 @@ bool FitsIn(const BoardPose& pose, const BoardPrior& prior) {
   constexpr double kMaxSquare = 22.5;  // chi-square of six, one in a thousand
   Vector6d off;
   const Eigen::Isometry3d T_lidar_board = TransformFromPose(pose);
-  const Eigen::AngleAxisd turn(T_lidar_board.linear() *
-                               prior.T_lidar_board.linear().transpose());
+  const Eigen::AngleAxisd turn(T_lidar_board.linear() * prior.T_lidar_board.linear().transpose());
   off << turn.angle() * turn.axis(),
       T_lidar_board.translation() - prior.T_lidar_board.translation();
   const Matrix6d both = pose.covariance + prior.covariance;

@@ -70,11 +70,10 @@ std::string SideOf(const Measurement& m, std::size_t edge) {
 std::string JoinedTo(const Measurement& m, std::size_t side) {
   constexpr double kDown = -0.8;
   const Eigen::Vector2d outward = OutwardOf(side);
-  const double up =
-      TransformOf(m.frame, m.outline.pose).linear().row(2).head<2>().dot(outward);
+  const double up = TransformOf(m.frame, m.outline.pose).linear().row(2).head<2>().dot(outward);
   const SideEvidence& at = m.sides[side];
-  const bool is_ground = up < kDown && at.Count(SideEvidence::Past::kTouch) >
-                                           at.Count(SideEvidence::Past::kPlane);
+  const bool is_ground =
+      up < kDown && at.Count(SideEvidence::Past::kTouch) > at.Count(SideEvidence::Past::kPlane);
   return is_ground ? " (the ground)" : "";
 }
 
@@ -95,8 +94,7 @@ NoLidarBoard OpenAt(const Measurement& m, std::size_t side) {
 
 /// Of one side's eight, whatever was concluded from the others.
 int NumPartsOnPlane(const Measurement& m, std::size_t side) {
-  return LookAtSides(
-             m.view.Outline(), m.view.Blocked(), m.model, m.outline.pose, SpacingM(m))[side]
+  return LookAtSides(m.view.Outline(), m.view.Blocked(), m.model, m.outline.pose, SpacingM(m))[side]
       .Count(SideEvidence::Past::kPlane);
 }
 
@@ -121,7 +119,8 @@ std::array<bool, 4> ToldSides(const Measurement& m,
   for (std::size_t i = 0; i < 4; ++i) {
     const SideEvidence& side = m.sides[i];
     const bool is_last_seen = side.view == SideView::kCutOff && -side.reach_m < max_short_m;
-    is_told[i] = side.view == SideView::kMeasured || (is_last_seen && (is_cropped || is_covered[i]));
+    is_told[i] =
+        side.view == SideView::kMeasured || (is_last_seen && (is_cropped || is_covered[i]));
   }
   return is_told;
 }
@@ -157,10 +156,11 @@ std::optional<NoLidarBoard> Doubt(const Measurement& m,
                                   const Agreement& agreement,
                                   const std::array<bool, 4>& is_told) {
   const auto num_told = std::count(is_told.begin(), is_told.end(), true);
-  const auto open = static_cast<std::size_t>(
-      std::find(is_told.begin(), is_told.end(), false) - is_told.begin());
+  const auto open =
+      static_cast<std::size_t>(std::find(is_told.begin(), is_told.end(), false) - is_told.begin());
   if (num_told == 4) {
-    const double min_covered = agreement.empty <= 1.0 - kMinCovered ? kMinCoveredOfThree : kMinCovered;
+    const double min_covered =
+        agreement.empty <= 1.0 - kMinCovered ? kMinCoveredOfThree : kMinCovered;
     if (agreement.covered >= min_covered) return {};
     return OpenAt(m, LeastReached(m));
   }

@@ -23,7 +23,8 @@ struct Place {
 class SidePlaces {
  public:
   SidePlaces(const OutlineModel& model, const RectanglePose& pose)
-      : T_rectangle_plane_(pose.T_rectangle_plane()), half_m_(model.width_m / 2, model.height_m / 2) {}
+      : T_rectangle_plane_(pose.T_rectangle_plane()),
+        half_m_(model.width_m / 2, model.height_m / 2) {}
 
   Eigen::Vector2d ToRectangle(const Eigen::Vector2d& p_m) const { return T_rectangle_plane_ * p_m; }
   Eigen::Array2d OutsideM(const Eigen::Vector2d& q_m) const { return q_m.array().abs() - half_m_; }
@@ -84,8 +85,7 @@ SideView ViewOf(const SideEvidence& side, const SideCount& count, double max_sho
   const int num_before = side.Count(Past::kBefore);
   const int num_shown = side.Count(Past::kNothing);
   const bool is_reached = -side.reach_m < max_short_m;
-  const bool is_shown =
-      num_shown >= kMinParts || (num_shown > 0 && num_joined + num_before == 0);
+  const bool is_shown = num_shown >= kMinParts || (num_shown > 0 && num_joined + num_before == 0);
   if (is_reached && is_shown && num_misses >= kMinMisses) return SideView::kMeasured;
   if (!is_reached && count.num_blocked_inside > 2) return SideView::kHidden;
   if (num_joined > 0 && num_joined >= num_before) return SideView::kJoined;

@@ -31,7 +31,8 @@ std::string SidesOf(const PointCloud& cloud) {
   const auto found = DetectLidarBoard(cloud, kBoard, {});
   if (!found) return ToString(found.error());
   std::string text;
-  for (const SideView view : found->front().sides) text += (text.empty() ? "" : " ") + ToString(view);
+  for (const SideView view : found->front().sides)
+    text += (text.empty() ? "" : " ") + ToString(view);
   return text;
 }
 

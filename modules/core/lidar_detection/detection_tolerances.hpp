@@ -15,6 +15,8 @@ constexpr std::size_t kMinBoardHits = 30;
 /// Beams so near a side may be partly of the board: hits end 5 mm past it, at a slant 10 mm, and
 /// offsets between scan lines move them by as much again.
 constexpr double kSideMarginM = 0.03;
+/// Past a bar along a side, where only what it hangs on is left.
+constexpr double kWellPastM = 0.08;
 /// Just past a side, and as far as scan lines may be apart.
 constexpr double kJustPastM = 0.15;
 constexpr double kFarPastM = 0.4;

@@ -159,15 +159,13 @@ void LookAround(Measurement* m) {
 /// A bar along a whole side, as a frame or an easel has, makes the board look longer; a post or the
 /// ground, which join it in part, tell on which side. What is past that side says nothing then.
 void OpenLengthenedSides(Measurement* m) {
-  const auto num_joined = [m](std::size_t side) {
-    return m->sides[side].Count(SideEvidence::Past::kPlane) +
-           m->sides[side].Count(SideEvidence::Past::kTouch);
-  };
+  constexpr int kFew = 2;  // hits well past a side may be stray
   for (std::size_t i = 0; i < 4; ++i) {
+    const SideEvidence& side = m->sides[i];
     const std::size_t opposite = (i + 2) % 4;
-    const bool may_be = m->sides[i].view == SideView::kMeasured && num_joined(i) > 0 &&
-                        m->sides[opposite].view == SideView::kMeasured && num_joined(opposite) == 0;
-    if (!may_be) continue;
+    const SideEvidence& opposite_side = m->sides[opposite];
+    if (side.view != SideView::kMeasured || opposite_side.view != SideView::kMeasured) continue;
+    if (side.num_joined <= kFew || opposite_side.num_joined > kFew) continue;
     const auto edges = MeasureEdges(m->telling, m->model, m->outline.pose);
     if (edges[i].offset_m + edges[opposite].offset_m < kLengthenedM) continue;
     m->sides[i].view = SideView::kJoined;
@@ -278,14 +276,20 @@ OutlineModel AmongThings(OutlineModel model) {
 }
 
 /// Plane and outline in turns: the outline says which points are the board's, and the plane where
-/// the beams meet it; then what is past its sides says which beams tell of it.
-std::optional<NoLidarBoard> FitPlaneAndOutline(const PointCloud& cloud_lidar_m, Measurement* m) {
+/// the beams meet it; then what is past its sides says which beams tell of it. From where the board
+/// is expected they are told at once: what joins it would draw a rough fit away.
+std::optional<NoLidarBoard> FitPlaneAndOutline(const PointCloud& cloud_lidar_m,
+                                               bool is_expected,
+                                               Measurement* m) {
   for (const double first_blur_m : {SearchBlurM(m->model) / 2, 3 * m->model.blur_m}) {
     LookAround(m);
     if (!AgreementOf(*m).IsBoardLike()) return Because(LidarBoardMiss::kSizeMismatch);
     if (!RefinePlane(cloud_lidar_m, m)) return Because(LidarBoardMiss::kNoPlane);
-    m->outline =
-        SharpenOutline(m->view.Outline(), AmongThings(m->model), m->outline.pose, first_blur_m);
+    if (is_expected) LookAround(m);
+    m->outline = SharpenOutline(is_expected ? m->telling : m->view.Outline(),
+                                AmongThings(m->model),
+                                m->outline.pose,
+                                first_blur_m);
   }
   LookAround(m);
   if (!RefinePlane(cloud_lidar_m, m)) return Because(LidarBoardMiss::kNoPlane);
@@ -378,7 +382,7 @@ Expected<MeasuredBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
   m.outline = SearchOutline(m.view.Outline(), AmongThings(m.model), Eigen::Vector2d::Zero());
   if (m.outline.Unexplained() > kMaxUnexplainedRoughly)
     return Because(LidarBoardMiss::kSizeMismatch);
-  if (auto none = FitPlaneAndOutline(cloud_lidar_m, &m)) return *none;
+  if (auto none = FitPlaneAndOutline(cloud_lidar_m, false, &m)) return *none;
   m.outline.pose = Upright(m.frame, m.outline.pose);
   if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
   return Decide(m, false, beams, cloud_lidar_m, board, options);
@@ -405,7 +409,7 @@ Expected<MeasuredBoard, NoLidarBoard> MeasureExpectedBoard(const BoardPrior& pri
                     std::atan2(m.frame.e2.dot(width_axis), m.frame.e1.dot(width_axis))};
   m.outline.spill_m = m.model.spill_m;
   m.outline.thickness_m = m.model.thickness_m;
-  if (auto none = FitPlaneAndOutline(cloud_lidar_m, &m)) return *none;
+  if (auto none = FitPlaneAndOutline(cloud_lidar_m, true, &m)) return *none;
   if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
   auto decided = Decide(m, true, beams, cloud_lidar_m, board, options);
   if (decided && !FitsIn(decided->board.pose, prior)) return Because(LidarBoardMiss::kNoPlane);

@@ -69,8 +69,8 @@ bool Touches(const BlockedBeam& beam, double outside_m) {
 
 struct SideCount {
   std::array<PartCount, SideEvidence::kNumParts> near, far;
-  int num_hits_inside = 0;
   int num_blocked_inside = 0;
+  int num_joined = 0;
   double reach_m = -1e9;
 
   const PartCount& Part(std::size_t i) const { return near[i].Num() > 0 ? near[i] : far[i]; }
@@ -122,6 +122,7 @@ std::array<SideEvidence, 4> LookAtSides(const std::vector<OutlineBeam>& beams,
       }
       if (place->outside_m < 0) continue;
       PartCount* part = part_at(*place);
+      if (part != nullptr && beam.is_hit) counts[i].num_joined += place->outside_m > kWellPastM;
       if (part != nullptr) ++(beam.is_hit ? part->num_hits : part->num_misses);
     }
   }
@@ -143,6 +144,7 @@ std::array<SideEvidence, 4> LookAtSides(const std::vector<OutlineBeam>& beams,
   std::array<SideEvidence, 4> sides;
   for (std::size_t i = 0; i < 4; ++i) {
     sides[i].reach_m = counts[i].reach_m;
+    sides[i].num_joined = counts[i].num_joined;
     for (std::size_t k = 0; k < SideEvidence::kNumParts; ++k) {
       sides[i].past[k] = counts[i].Part(k).What();
     }

@@ -24,6 +24,7 @@ struct SideEvidence {
 
   SideView view = SideView::kGap;
   std::array<Past, kNumParts> past{};
+  int num_joined = 0;    ///< Hits well past it: of a post, a leaf, a hand.
   double reach_m = 0.0;  ///< How far beyond the side the outermost hits lie (< 0: short).
 
   int Count(Past what) const;

@@ -171,6 +171,21 @@ TEST(LidarBoardVerdict, EdgeOfWhichAPartIsShownIsProven) {
   EXPECT_EQ("found", VerdictOn(SynthesizeLidarBoard(scene)));
 }
 
+TEST(LidarBoardVerdict, TwoEqualBoardsBeforeNothingAreAmbiguous) {
+  // Without misses every log-likelihood is negative: a share of the best would be above it.
+  SyntheticLidarBoardOptions scene = UprightBoard();
+  scene.has_wall = scene.has_floor = false;
+  scene.num_rings = 64;
+  SyntheticBox twin;
+  twin.T_lidar_box.translation() = Eigen::Vector3d(2.35, 1.5, 0.0);
+  twin.half_m = {0.05, kBoard.width_m / 2, kBoard.height_m / 2};
+  scene.boxes.push_back(twin);
+  const auto found = DetectLidarBoard(SynthesizeLidarBoard(scene), kBoard, {});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().miss, LidarBoardMiss::kAmbiguous);
+  EXPECT_EQ(found.error().unsure.size(), 2U);
+}
+
 TEST(LidarBoardVerdict, BoardSeenFlatIsNamed) {
   SyntheticLidarBoardOptions scene = UprightBoard();
   scene.num_rings = 128;

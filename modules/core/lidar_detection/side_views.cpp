@@ -85,9 +85,13 @@ SideView ViewOf(const SideEvidence& side, const SideCount& count, double max_sho
   const int num_before = side.Count(Past::kBefore);
   const int num_shown = side.Count(Past::kNothing);
   const bool is_reached = -side.reach_m < max_short_m;
+  const bool is_near = -side.reach_m < kJustPastM;  // scan lines may be so far apart
   const bool is_shown = num_shown >= kMinParts || (num_shown > 0 && num_joined + num_before == 0);
-  if (is_reached && is_shown && num_misses >= kMinMisses) return SideView::kMeasured;
+  if (is_near && is_shown && num_misses >= kMinMisses) return SideView::kMeasured;
   if (!is_reached && count.num_blocked_inside > 2) return SideView::kHidden;
+  // A hand before or in the plane, and nothing else past a side: a cropped cloud, as a rule.
+  const bool is_unseen = side.Count(Past::kUnseen) > num_joined + num_before + num_shown;
+  if (is_unseen) return num_misses > 0 ? SideView::kGap : SideView::kCutOff;
   if (num_joined > 0 && num_joined >= num_before) return SideView::kJoined;
   if (num_before > 0) return SideView::kHidden;
   return num_shown + num_misses > 0 ? SideView::kGap : SideView::kCutOff;
@@ -162,10 +166,16 @@ std::vector<OutlineBeam> TellingBeams(const std::vector<OutlineBeam>& beams,
     const Past past = sides[side].past[part];
     return past == Past::kPlane || past == Past::kTouch;
   };
+  // What joins a side may reach into the rectangle, unless the side opposite tells where this one
+  // is.
+  std::array<double, 4> margin_m{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool is_told = sides[(i + 2) % 4].view == SideView::kMeasured;
+    margin_m[i] = is_told ? kSideMarginM : (i % 2 == 1 ? model.width_m : model.height_m) / 2;
+  }
   const auto tells = [&](const OutlineBeam& beam) {
     const Eigen::Vector2d q_m = places.ToRectangle(beam.position_m);
     const Eigen::Array2d outside_m = places.OutsideM(q_m);
-    if (outside_m.maxCoeff() < -kSideMarginM) return true;
     if (outside_m.minCoeff() > 0) {
       // Beyond a corner: at the ends of two sides.
       if (!beam.is_hit) return true;
@@ -175,7 +185,7 @@ std::vector<OutlineBeam> TellingBeams(const std::vector<OutlineBeam>& beams,
     }
     for (std::size_t i = 0; i < 4; ++i) {
       const auto place = places.At(q_m, i);
-      if (place && place->outside_m > -kSideMarginM && goes_on(i, place->part)) return false;
+      if (place && place->outside_m > -margin_m[i] && goes_on(i, place->part)) return false;
     }
     return true;
   };

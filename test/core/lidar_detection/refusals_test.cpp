@@ -80,7 +80,7 @@ TEST(LidarBoardVerdict, SideBeyondTheFieldOfViewIsOpen) {
 TEST(LidarBoardVerdict, BoardThatStandsOnTheGroundIsJoinedToIt) {
   SyntheticLidarBoardOptions scene = UprightBoard();
   scene.num_rings = 64;
-  scene.T_lidar_board = FacingBoard({2.3, 0.0, -1.3 + 0.425}, 0.0);
+  scene.T_lidar_board = FacingBoard({5.2, 0.0, -1.3 + 0.425}, 0.0);
   scene.T_lidar_board.linear() << 0, 0, -1, 1, 0, 0, 0, 1, 0;  // upright
   scene.T_lidar_board.linear().col(0) *= -1;
   const PointCloud cloud = SynthesizeLidarBoard(scene);

@@ -50,6 +50,8 @@ constexpr double kLengthenedM = 0.03;
 /// Share of the 4 x 4 fields with hits: of a board that is measured on three sides, whose fourth
 /// may be hidden; and of one where less is measured.
 constexpr double kMinCoveredOfThree = 0.6;
+/// Hits that three sides need: in the halls, with fewer, other things are taken for the board.
+constexpr std::size_t kMinHitsOfThree = 150;
 constexpr double kMinCovered = 0.8;
 
 }  // namespace voqcal

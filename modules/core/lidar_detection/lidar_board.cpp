@@ -111,9 +111,11 @@ bool OverlapsAny(const LidarBoard& board, const std::vector<LidarBoard>& better,
 
 /// Whether a rival is nearly as likely as the best, in nats; a whole sighting beats a partial one.
 bool IsAsGood(const LidarBoard& rival, const LidarBoard& best) {
-  constexpr double kLess = 0.2;  // of the best one's evidence
+  constexpr double kLess = 0.2;  // of the best one's evidence...
+  constexpr double kNats = 5.0;  // ...or a likelihood ratio of 150
   return NumMeasuredSides(rival) >= NumMeasuredSides(best) &&
-         best.log_likelihood - rival.log_likelihood < kLess * std::abs(best.log_likelihood);
+         best.log_likelihood - rival.log_likelihood <
+             std::max(kLess * std::abs(best.log_likelihood), kNats);
 }
 
 /// Best first, each place once.

@@ -195,8 +195,12 @@ bool IsSeenFlat(const Measurement& m) {
   return -ray.dot(m.frame.plane.normal) < kMinSine;
 }
 
+/// Inside every beam counts; outside only those that tell where the board ends.
 Agreement AgreementOf(const Measurement& m) {
-  return Compare(m.telling, m.view.Blocked(), m.model, m.outline.pose);
+  Agreement agreement = Compare(m.view.Outline(), m.view.Blocked(), m.model, m.outline.pose);
+  agreement.hits_outside =
+      Compare(m.telling, m.view.Blocked(), m.model, m.outline.pose).hits_outside;
+  return agreement;
 }
 
 /// Of [rotation_rad; translation_m], left side. The outline gives the shift in the plane and the

@@ -159,12 +159,14 @@ std::optional<NoLidarBoard> Doubt(const Measurement& m,
   const auto open =
       static_cast<std::size_t>(std::find(is_told.begin(), is_told.end(), false) - is_told.begin());
   if (num_told == 4) {
-    const double min_covered =
-        agreement.empty <= 1.0 - kMinCovered ? kMinCoveredOfThree : kMinCovered;
-    if (agreement.covered >= min_covered) return {};
+    // Gaps of the scan are no holes, if hits and misses show all of the outline.
+    const bool is_outlined =
+        NumMeasured(m.sides) == 4 && m.sides[LeastReached(m)].reach_m > -kMaxShortM / 2;
+    const bool has_holes = agreement.empty > 1.0 - kMinCovered;
+    if (agreement.covered >= kMinCovered || (is_outlined && !has_holes)) return {};
     return OpenAt(m, LeastReached(m));
   }
-  if (num_told < 3) return OpenAt(m, open);
+  if (num_told < 3 || m.board_hits.size() < kMinHitsOfThree) return OpenAt(m, open);
   // A strip of the board's width may be anything.
   constexpr int kMaxPartsJoined = 5;
   const bool is_strip = NumPartsOnPlane(m, open) > kMaxPartsJoined;

@@ -41,7 +41,7 @@ struct LidarSighting {
   Eigen::Isometry3d T_lidar_board = Eigen::Isometry3d::Identity();
   BoardHits hits;
   SightingVerdict verdict = SightingVerdict::kMissed;
-  std::string reason;  ///< Of a miss.
+  std::string reason;          ///< Of a miss.
   int num_measured_sides = 0;  ///< Of what was taken for the board.
   BoardPose found;             ///< What was taken for the board, if anything was.
   double centre_error_m = kUnmeasured;
@@ -57,8 +57,9 @@ struct LidarSighting {
 };
 
 /// Boards in any attitude up to 50 degrees from facing the lidar, each wholly within its view,
-/// hidden by nothing and 15 cm or more from anything but what is asked to touch it. Wrong: the first candidate's centre is off by
-/// more than 10 cm, or its axes by more than 10 degrees (but for half a turn).
+/// hidden by nothing and 15 cm or more from anything but what is asked to touch it. Wrong: the
+/// first candidate's centre is off by more than 10 cm, or its axes by more than 10 degrees (but for
+/// half a turn).
 std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options,
                                             const LidarBoardOptions& detector);
 

@@ -1,5 +1,6 @@
 // lidar-detection: how often the board is found, how often something else is taken for it, and how
-// well errors agree with their covariance; for each scan pattern, among clutter, by range.
+// well errors agree with their covariance; for each scan pattern, among clutter, by range; then
+// with each thing that may touch a board, and by the number of sides that were measured.
 
 #include "support/lidar_detection.hpp"
 
@@ -31,6 +32,7 @@ struct Flags {
   int num_runs = 200;
   std::uint32_t seed = 1;
   bool is_list = false;
+  bool is_whole_only = false;
 };
 
 // Of some sightings.
@@ -103,17 +105,79 @@ void RunPattern(ScanPattern pattern, const Flags& flags) {
   for (const std::string& failure : failures) std::cout << "    " << failure << '\n';
 }
 
+void PrintHead(const std::string& what) {
+  std::cout << what << '\n'
+            << std::left << std::setw(24) << "pattern" << std::right << std::setw(7) << "sweeps"
+            << std::setw(8) << "enough" << std::setw(9) << "found %" << std::setw(9) << "wrong %"
+            << std::setw(18) << "NEES ctr  normal" << std::setw(18) << "ctr mm  nrm deg" << '\n';
+}
+
+void PrintAsked(const std::string& found, const std::string& wrong) {
+  std::cout << std::left << std::setw(24) << "asked" << std::right << std::setw(7) << ""
+            << std::setw(8) << "" << std::setw(9) << found << std::setw(9) << wrong << std::setw(18)
+            << "0.8 to 1.2, each" << '\n';
+}
+
+test::LidarDetectionOptions OptionsOf(const std::string& pattern, const Flags& flags) {
+  test::LidarDetectionOptions options;
+  options.pattern = *ScanPatternFromString(pattern);
+  options.num_sweeps = flags.num_runs;
+  options.seed = flags.seed;
+  return options;
+}
+
+/// Something touches every board.
+void RunContacts(const Flags& flags) {
+  PrintHead("\nthe same boards, each touched by one thing");
+  PrintAsked(">= 95", "<= 0.1");
+  for (const BoardContact contact : AllBoardContacts()) {
+    for (const std::string& pattern : flags.patterns) {
+      test::LidarDetectionOptions options = OptionsOf(pattern, flags);
+      options.contact = contact;
+      Tally tally;
+      for (const LidarSighting& sighting : test::SightLidarBoards(options, {})) {
+        tally.Add(sighting);
+        const bool is_failure =
+            sighting.verdict == SightingVerdict::kWrong ||
+            (sighting.verdict == SightingVerdict::kMissed && sighting.IsEnough());
+        if (flags.is_list && is_failure) std::cout << "    " << sighting.Line() << '\n';
+      }
+      PrintRow(ToString(contact) + ", " + pattern, tally);
+    }
+  }
+}
+
+/// The board is expected, and some of its sides are joined to leaves in its plane.
+void RunOpenSides(const Flags& flags) {
+  constexpr std::array<const char*, 5> kNames = {
+      "plane alone", "three sides open", "two sides open", "one side open", "whole"};
+  std::array<Tally, kNames.size()> by_sides;  // that were measured
+  for (const std::string& pattern : flags.patterns) {
+    for (int num_joined = 1; num_joined <= 4; ++num_joined) {
+      test::LidarDetectionOptions options = OptionsOf(pattern, flags);
+      options.num_joined = num_joined;
+      options.has_prior = true;
+      for (const LidarSighting& sighting : test::SightLidarBoards(options, {})) {
+        const bool is_found = sighting.verdict != SightingVerdict::kMissed;
+        if (is_found) by_sides[static_cast<std::size_t>(sighting.num_measured_sides)].Add(sighting);
+      }
+    }
+  }
+  PrintHead(
+      "\nboards that are expected, with one to four sides joined to something in their plane");
+  PrintAsked("", "");
+  for (std::size_t i = kNames.size(); i-- > 0;) PrintRow(kNames[i], by_sides[i]);
+}
+
 void Run(const Flags& flags) {
-  std::cout << "boards of 0.61 x 0.85 m at 1.5 to 8 m among clutter and a board of another size\n"
-            << "enough: 6 rings or 150 points on the board; found: of these; wrong: of all sweeps\n"
-            << std::left << std::setw(24) << "pattern, range" << std::right << std::setw(7)
-            << "sweeps" << std::setw(8) << "enough" << std::setw(9) << "found %" << std::setw(9)
-            << "wrong %" << std::setw(18) << "NEES ctr  normal" << std::setw(18)
-            << "ctr mm  nrm deg" << '\n'
-            << std::left << std::setw(24) << "asked" << std::right << std::setw(7) << ""
-            << std::setw(8) << "" << std::setw(9) << ">= 98" << std::setw(9) << "<= 0.1"
-            << std::setw(18) << "0.8 to 1.2, each" << '\n';
+  PrintHead(
+      "boards of 0.61 x 0.85 m at 1.5 to 8 m among clutter and a board of another size\n"
+      "enough: 6 rings or 150 points on the board; found: of these; wrong: of all sweeps");
+  PrintAsked(">= 98", "<= 0.1");
   for (const std::string& name : flags.patterns) RunPattern(*ScanPatternFromString(name), flags);
+  if (flags.is_whole_only) return;
+  RunContacts(flags);
+  RunOpenSides(flags);
 }
 
 }  // namespace
@@ -127,6 +191,7 @@ void AddLidarDetection(CLI::App* app) {
   command->add_option("--runs", flags->num_runs, "sweeps of each pattern (default 200)")
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", flags->seed, "of the first hall; ten sweeps in each (default 1)");
+  command->add_flag("--whole", flags->is_whole_only, "only boards that nothing touches");
   command->add_flag("--list", flags->is_list, "list each miss and each wrong one");
   command->callback([flags] { Run(*flags); });
 }

@@ -15,7 +15,6 @@
 
 namespace voqcal {
 
-
 /// Everything about one patch while it is measured.
 struct Measurement {
   PatchView view;

@@ -15,6 +15,8 @@ constexpr std::size_t kMinBoardHits = 30;
 /// Beams so near a side may be partly of the board: hits end 5 mm past it, at a slant 10 mm, and
 /// offsets between scan lines move them by as much again.
 constexpr double kSideMarginM = 0.03;
+/// Past a bar along a side, where only what it hangs on is left.
+constexpr double kWellPastM = 0.08;
 /// Just past a side, and as far as scan lines may be apart.
 constexpr double kJustPastM = 0.15;
 constexpr double kFarPastM = 0.4;
@@ -41,9 +43,15 @@ constexpr LengthTolerance kExpectedOfOne{0.15, 0.0, 0.15};
 constexpr LengthTolerance kExpectedOfMean{0.08, 0.0, 0.08};
 constexpr double kMaxUnexplainedIfExpected = 0.4;
 
-/// Share of the 4 x 4 fields with hits: of a board that is measured on three sides, whose fourth may
-/// be hidden; and of one where less is measured.
+/// Two sides farther apart by this are not both the board's: spill and thickness lengthen by up to
+/// 25 mm, a bar along a side by 40 and more.
+constexpr double kLengthenedM = 0.03;
+
+/// Share of the 4 x 4 fields with hits: of a board that is measured on three sides, whose fourth
+/// may be hidden; and of one where less is measured.
 constexpr double kMinCoveredOfThree = 0.6;
+/// Hits that three sides need: in the halls, with fewer, other things are taken for the board.
+constexpr std::size_t kMinHitsOfThree = 150;
 constexpr double kMinCovered = 0.8;
 
 }  // namespace voqcal

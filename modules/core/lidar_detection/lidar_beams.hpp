@@ -35,15 +35,22 @@ bool IsInShare(std::size_t i, std::size_t share, std::size_t num);
 /// The returns of a cloud by direction: those of a cone are found without looking at all.
 class BeamIndex {
  public:
-  /// @param cloud_lidar_m  borrowed; its returns nearer than `min_range_m` are left out.
-  BeamIndex(const PointCloud& cloud_lidar_m, double min_range_m);
+  /// @param cloud_lidar_m  borrowed; its returns nearer than `min_range_m` are left out, and a
+  ///     second return at the same place, as drivers give for a beam with one echo.
+  /// @param R_axes_lidar  z about the axis that the sensor spins about, if it does: then sectors
+  ///     have as many beams each.
+  BeamIndex(const PointCloud& cloud_lidar_m,
+            double min_range_m,
+            const Eigen::Matrix3d& R_axes_lidar = Eigen::Matrix3d::Identity());
 
-  /// Whether the sensor looks in a `direction` at all: other returns are as high and as low, and
-  /// some have its azimuth. Then a beam without a return has met the sky.
-  bool Covers(const Eigen::Vector3d& direction) const;
+  const Eigen::Matrix3d& R_axes_lidar() const { return R_axes_lidar_; }
 
-  /// Appends the beams within `half_angle_rad` of `axis` (unit length).
-  void AppendCone(const Eigen::Vector3d& axis,
+  /// Whether the sensor looks in a direction at all: about the axes, other returns are as high and
+  /// as low, and some have its azimuth. Then a beam without a return has met the sky.
+  bool Covers(const Eigen::Vector3d& direction_lidar) const;
+
+  /// Appends the beams within `half_angle_rad` of `axis_lidar` (unit length).
+  void AppendCone(const Eigen::Vector3d& axis_lidar,
                   double half_angle_rad,
                   std::vector<LidarBeam>* cone) const;
 
@@ -51,6 +58,7 @@ class BeamIndex {
   static constexpr std::size_t kNumSectors = 128;  // about 3 degrees of azimuth each
 
   const PointCloud* cloud_lidar_m_;
+  Eigen::Matrix3d R_axes_lidar_;
   std::vector<std::uint32_t> points_;                 // by sector, then as they came
   std::array<std::size_t, kNumSectors + 1> begin_{};  // of each sector
   double lowest_slope_ = 0.0;                         // z over the distance from the axis...

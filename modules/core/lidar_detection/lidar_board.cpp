@@ -6,6 +6,8 @@
 #include <iterator>
 #include <utility>
 
+#include "core/lidar/scan_lines.hpp"
+#include "core/lidar_detection/cloud_axes.hpp"
 #include "core/lidar_detection/lidar_beams.hpp"
 #include "core/lidar_detection/measure_board.hpp"
 #include "core/lidar_detection/planar_patches.hpp"
@@ -53,6 +55,33 @@ PatchSearchOptions PatchesOf(const BoardSpec& board) {
   return search;
 }
 
+/// The same cloud with the rings that its geometry tells, if it has none or names other things so;
+/// nothing if it may stay as it is.
+std::optional<PointCloud> Ringed(const PointCloud& cloud_lidar_m) {
+  if (cloud_lidar_m.has_ring && AreRingsScanLines(cloud_lidar_m)) return {};
+  const std::vector<std::uint16_t> lines = ScanLinesOf(cloud_lidar_m);
+  if (lines.empty() && !cloud_lidar_m.has_ring) return {};
+  PointCloud ringed = cloud_lidar_m;
+  ringed.has_ring = !lines.empty();
+  for (std::size_t i = 0; i < lines.size(); ++i) ringed.points[i].ring = lines[i];
+  return ringed;
+}
+
+/// The patches of the points, searched in the cloud's own axes.
+std::vector<PlanarPatch> PatchesInAxes(std::vector<Eigen::Vector3d> points_m,
+                                       const Eigen::Matrix3d& R_axes_lidar,
+                                       const BoardSpec& board) {
+  for (Eigen::Vector3d& point_m : points_m) point_m = R_axes_lidar * point_m;
+  std::vector<PlanarPatch> patches = FindPlanarPatches(points_m, PatchesOf(board));
+  const Eigen::Matrix3d R_lidar_axes = R_axes_lidar.transpose();
+  for (PlanarPatch& patch : patches) {
+    patch.middle_m = R_lidar_axes * patch.middle_m;
+    patch.plane.point_m = R_lidar_axes * patch.plane.point_m;
+    patch.plane.normal = R_lidar_axes * patch.plane.normal;
+  }
+  return patches;
+}
+
 /// A board may fall into several patches.
 bool IsPartOfAny(const PlanarPatch& patch, const std::vector<LidarBoard>& found) {
   return std::any_of(found.begin(), found.end(), [&](const LidarBoard& board) {
@@ -82,9 +111,11 @@ bool OverlapsAny(const LidarBoard& board, const std::vector<LidarBoard>& better,
 
 /// Whether a rival is nearly as likely as the best, in nats; a whole sighting beats a partial one.
 bool IsAsGood(const LidarBoard& rival, const LidarBoard& best) {
-  constexpr double kLess = 0.2;  // of the best one's evidence
+  constexpr double kLess = 0.2;  // of the best one's evidence...
+  constexpr double kNats = 5.0;  // ...or a likelihood ratio of 150
   return NumMeasuredSides(rival) >= NumMeasuredSides(best) &&
-         best.log_likelihood - rival.log_likelihood < kLess * std::abs(best.log_likelihood);
+         best.log_likelihood - rival.log_likelihood <
+             std::max(kLess * std::abs(best.log_likelihood), kNats);
 }
 
 /// Best first, each place once.
@@ -117,7 +148,7 @@ Search SearchPatches(const std::vector<Eigen::Vector3d>& points_m,
   // Bounds on the time: patches come in the order of how like the board they are spread.
   constexpr std::size_t kMaxPatches = 8;
   constexpr std::size_t kMaxPatchesUntilFound = 40;
-  const std::vector<PlanarPatch> patches = FindPlanarPatches(points_m, PatchesOf(board));
+  const std::vector<PlanarPatch> patches = PatchesInAxes(points_m, index.R_axes_lidar(), board);
   Search search;
   const auto come_closer = [&search](NoLidarBoard none) {
     if (none.miss > search.closest.miss) search.closest = std::move(none);
@@ -185,7 +216,7 @@ std::vector<std::string> BoardPrior::Problems() const {
 }
 
 Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
-    const PointCloud& cloud_lidar_m,
+    const PointCloud& sweep_lidar_m,
     const BoardSpec& board,
     const LidarBoardOptions& options,
     const LidarBackground* background,
@@ -194,10 +225,12 @@ Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
   RequireUsable("DetectLidarBoard: options", options.Problems());
   if (prior) RequireUsable("DetectLidarBoard: prior", prior->Problems());
 
+  const std::optional<PointCloud> ringed = Ringed(sweep_lidar_m);
+  const PointCloud& cloud_lidar_m = ringed ? *ringed : sweep_lidar_m;
   const std::vector<Eigen::Vector3d> points_m = SearchedPoints(cloud_lidar_m, options);
   if (points_m.size() < kMinPoints) return NoLidarBoard{LidarBoardMiss::kTooFewPoints, {}};
 
-  const BeamIndex index(cloud_lidar_m, options.min_range_m);
+  const BeamIndex index(cloud_lidar_m, options.min_range_m, CloudAxes(points_m));
   if (prior) {
     auto measured = MeasureExpectedBoard(*prior, index, cloud_lidar_m, board, options);
     if (!measured) return measured.error();

@@ -67,6 +67,9 @@ struct BoardPrior {
 /// Finds the board of known size in one whole sweep: no region of interest, rings or order of
 /// points needed.
 ///
+/// The lidar's frame may be turned anyhow. Scan lines that the sweep does not name are told from
+/// its geometry.
+///
 /// Without a prior a board counts as found only if its measured sides tell it from other things;
 /// what may be the board, but may be something else, is in the error's `unsure`, best first. With a
 /// prior the board is searched there alone (within three sigma), which side is which is known, and
@@ -79,7 +82,7 @@ struct BoardPrior {
 ///     answer, not an error.
 /// @throws std::invalid_argument if `board`, `options` or `prior` have Problems().
 Expected<std::vector<LidarBoard>, NoLidarBoard> DetectLidarBoard(
-    const PointCloud& cloud_lidar_m,
+    const PointCloud& sweep_lidar_m,
     const BoardSpec& board,
     const LidarBoardOptions& options,
     const LidarBackground* background = nullptr,

@@ -15,13 +15,13 @@ std::string ToString(LidarBoardMiss miss) {
     case LidarBoardMiss::kFlat:
       return "seen at too flat an angle";
     case LidarBoardMiss::kJoined:
-      return "outline open: joined to something";
+      return "joined to something";
     case LidarBoardMiss::kCutOff:
-      return "outline open: the field of view ends";
+      return "leaves the field of view";
     case LidarBoardMiss::kGap:
-      return "outline open: the scan leaves a gap";
+      return "the scan leaves a gap";
     case LidarBoardMiss::kHidden:
-      return "outline open: something stands before it";
+      return "something stands before it";
     case LidarBoardMiss::kLoose:
       return "too few beams tell its outline";
     case LidarBoardMiss::kBent:

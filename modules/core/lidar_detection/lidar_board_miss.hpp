@@ -13,10 +13,10 @@ enum class LidarBoardMiss {
   kNoPlane,       ///< No planar patch of about the board's size.
   kSizeMismatch,  ///< Planar patches, but none whose outline fits the board's size.
   kFlat,          ///< A patch fits, but its plane is seen at too flat an angle.
-  kJoined,        ///< A patch fits, but its plane goes on past one side, or the ground begins there.
-  kCutOff,        ///< A patch fits, but past one side there are no beams: the field of view ends.
-  kGap,           ///< A patch fits, but at one side this sweep left too much unseen.
-  kHidden,        ///< A patch fits, but something stands before one side of it.
+  kJoined,        ///< May be it, but its plane goes on past a side, or the ground begins there.
+  kCutOff,        ///< May be it, but past a side there are no beams: the field of view ends.
+  kGap,           ///< May be it, but at a side this sweep left too much unseen.
+  kHidden,        ///< May be it, but something stands before a side.
   kLoose,         ///< A patch fits, but so few beams tell its outline that it could lie elsewhere.
   kBent,          ///< It has the board's outline, but is not flat.
   kAmbiguous,     ///< Two patches fit equally well.
@@ -32,6 +32,6 @@ struct NoLidarBoard {
   std::vector<LidarBoard> unsure{};
 };
 
-std::string ToString(const NoLidarBoard& none);  ///< "partly hidden on the left", ...
+std::string ToString(const NoLidarBoard& none);  ///< "something stands before it on the left", ...
 
 }  // namespace voqcal

@@ -22,7 +22,6 @@
 #include "core/lidar_detection/outline_fit.hpp"
 #include "core/lidar_detection/patch_view.hpp"
 #include "core/lidar_detection/refusals.hpp"
-#include "core/median.hpp"
 
 namespace voqcal {
 namespace {
@@ -59,6 +58,14 @@ Eigen::Vector2d LeanOf(const PlaneFrame& frame, const RectanglePose& pose) {
   return ray_board.head<2>() / std::abs(ray_board.z());
 }
 
+/// The cloud's axis that is most in the plane: it turns with the cloud.
+Eigen::Vector3d AxisAcross(const PlaneFit& plane, const BeamIndex& beams) {
+  const Eigen::Vector3d along_normal = (beams.R_axes_lidar() * plane.normal).cwiseAbs();
+  Eigen::Index axis = 0;
+  along_normal.minCoeff(&axis);
+  return beams.R_axes_lidar().row(axis).transpose();
+}
+
 /// The beams around a patch, on its own plane.
 Measurement Begin(const PlanarPatch& patch,
                   const BeamIndex& beams,
@@ -68,8 +75,15 @@ Measurement Begin(const PlanarPatch& patch,
   plane.point_m = patch.middle_m - plane.DistanceM(patch.middle_m) * plane.normal;
   const double diagonal_m = std::hypot(board.width_m, board.height_m);
   const double band_m = options.beam.hit_band_m;
-  Measurement m{
-      PatchView(beams, plane.point_m, diagonal_m), band_m, PlaneFrame(plane), {}, {}, {}, {}, {}, {}};
+  Measurement m{PatchView(beams, plane.point_m, diagonal_m),
+                band_m,
+                PlaneFrame(plane, AxisAcross(plane, beams)),
+                {},
+                {},
+                {},
+                {},
+                {},
+                {}};
   m.model = ModelOf(board, options, plane.point_m.norm());
   m.view.Classify(m.frame, band_m);
   return m;
@@ -108,7 +122,9 @@ double NoiseBandM(const std::vector<Eigen::Vector3d>& points_m, const PlaneFit& 
   std::vector<double> distances_m;
   distances_m.reserve(points_m.size());
   for (const Eigen::Vector3d& p_m : points_m) distances_m.push_back(std::abs(plane.DistanceM(p_m)));
-  return std::max(kLeastM, kSigmas * kMedianToSigma * Median(distances_m));
+  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
+  std::nth_element(distances_m.begin(), middle, distances_m.end());
+  return std::max(kLeastM, kSigmas * kMedianToSigma * *middle);
 }
 
 /// The plane of the points in the outline, and where the beams meet it. False if too few points are
@@ -125,7 +141,7 @@ bool RefinePlane(const PointCloud& cloud_lidar_m, Measurement* m) {
   PlaneFit plane = FitPlaneRobustly(m->positions_m, m->frame.plane, kPlaneScaleM);
   m->hit_band_m = std::min(m->hit_band_m, NoiseBandM(m->positions_m, plane));
   plane.point_m = centre_m - plane.DistanceM(centre_m) * plane.normal;
-  m->frame = PlaneFrame(plane);
+  m->frame = PlaneFrame(plane, m->frame.e1);
   m->view.Classify(m->frame, m->hit_band_m);
   const double angle_rad = std::atan2(m->frame.e2.dot(width_axis), m->frame.e1.dot(width_axis));
   m->outline.pose = {Eigen::Vector2d::Zero(), angle_rad};
@@ -135,15 +151,34 @@ bool RefinePlane(const PointCloud& cloud_lidar_m, Measurement* m) {
 
 /// What is past the sides of the rectangle, and which beams tell of it.
 void LookAround(Measurement* m) {
-  m->sides = LookAtSides(
-      m->view.Outline(), m->view.Blocked(), m->model, m->outline.pose, SpacingM(*m));
+  m->sides =
+      LookAtSides(m->view.Outline(), m->view.Blocked(), m->model, m->outline.pose, SpacingM(*m));
   m->telling = TellingBeams(m->view.Outline(), m->model, m->outline.pose, m->sides);
+}
+
+/// A bar along a whole side, as a frame or an easel has, makes the board look longer; a post or the
+/// ground, which join it in part, tell on which side. What is past that side says nothing then.
+void OpenLengthenedSides(Measurement* m) {
+  constexpr int kFew = 2;  // hits well past a side may be stray
+  for (std::size_t i = 0; i < 4; ++i) {
+    const SideEvidence& side = m->sides[i];
+    const std::size_t opposite = (i + 2) % 4;
+    const SideEvidence& opposite_side = m->sides[opposite];
+    if (side.view != SideView::kMeasured || opposite_side.view != SideView::kMeasured) continue;
+    if (side.num_joined <= kFew || opposite_side.num_joined > kFew) continue;
+    const auto edges = MeasureEdges(m->telling, m->model, m->outline.pose);
+    if (edges[i].offset_m + edges[opposite].offset_m < kLengthenedM) continue;
+    m->sides[i].view = SideView::kJoined;
+    m->sides[i].past.fill(SideEvidence::Past::kPlane);
+    m->telling = TellingBeams(m->view.Outline(), m->model, m->outline.pose, m->sides);
+  }
 }
 
 /// Takes all the rectangle's points. False if too few are left.
 bool Finish(const PointCloud& cloud_lidar_m, Measurement* m) {
   m->model.lean = LeanOf(m->frame, m->outline.pose);
   LookAround(m);
+  OpenLengthenedSides(m);
   m->outline = EvaluateOutline(m->telling, m->model, m->outline);
   m->outline = SettleOutline(m->telling, m->model, m->outline);
   m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, 0.0);
@@ -160,8 +195,12 @@ bool IsSeenFlat(const Measurement& m) {
   return -ray.dot(m.frame.plane.normal) < kMinSine;
 }
 
+/// Inside every beam counts; outside only those that tell where the board ends.
 Agreement AgreementOf(const Measurement& m) {
-  return Compare(m.telling, m.view.Blocked(), m.model, m.outline.pose);
+  Agreement agreement = Compare(m.view.Outline(), m.view.Blocked(), m.model, m.outline.pose);
+  agreement.hits_outside =
+      Compare(m.telling, m.view.Blocked(), m.model, m.outline.pose).hits_outside;
+  return agreement;
 }
 
 /// Of [rotation_rad; translation_m], left side. The outline gives the shift in the plane and the
@@ -213,8 +252,7 @@ LidarBoard Describe(const Measurement& m,
   for (std::size_t i = 0; i < 4; ++i) {
     const bool is_measured = found.sides[(i + 3) % 4] == SideView::kMeasured &&
                              found.sides[(i + 1) % 4] == SideView::kMeasured;
-    found.edge_lengths_m[i] =
-        is_measured ? lengths_m[i] : std::numeric_limits<double>::quiet_NaN();
+    found.edge_lengths_m[i] = is_measured ? lengths_m[i] : std::numeric_limits<double>::quiet_NaN();
   }
   found.log_likelihood = m.outline.log_likelihood - LogLikelihoodOfChance(m.telling);
   double sum_squares_m2 = 0.0;
@@ -242,19 +280,26 @@ OutlineModel AmongThings(OutlineModel model) {
 }
 
 /// Plane and outline in turns: the outline says which points are the board's, and the plane where
-/// the beams meet it; then what is past its sides says which beams tell of it.
-std::optional<NoLidarBoard> FitPlaneAndOutline(const PointCloud& cloud_lidar_m, Measurement* m) {
+/// the beams meet it; then what is past its sides says which beams tell of it. From where the board
+/// is expected they are told at once: what joins it would draw a rough fit away.
+std::optional<NoLidarBoard> FitPlaneAndOutline(const PointCloud& cloud_lidar_m,
+                                               bool is_expected,
+                                               Measurement* m) {
   for (const double first_blur_m : {SearchBlurM(m->model) / 2, 3 * m->model.blur_m}) {
     LookAround(m);
     if (!AgreementOf(*m).IsBoardLike()) return Because(LidarBoardMiss::kSizeMismatch);
     if (!RefinePlane(cloud_lidar_m, m)) return Because(LidarBoardMiss::kNoPlane);
-    m->outline =
-        SharpenOutline(m->view.Outline(), AmongThings(m->model), m->outline.pose, first_blur_m);
+    if (is_expected) LookAround(m);
+    m->outline = SharpenOutline(is_expected ? m->telling : m->view.Outline(),
+                                AmongThings(m->model),
+                                m->outline.pose,
+                                first_blur_m);
   }
   LookAround(m);
   if (!RefinePlane(cloud_lidar_m, m)) return Because(LidarBoardMiss::kNoPlane);
   for (int i = 0; i < 2; ++i) {
     LookAround(m);
+    OpenLengthenedSides(m);
     m->outline = RefineOutline(m->telling, m->model, m->outline.pose);
   }
   return {};
@@ -322,8 +367,7 @@ bool FitsIn(const BoardPose& pose, const BoardPrior& prior) {
   constexpr double kMaxSquare = 22.5;  // chi-square of six, one in a thousand
   Vector6d off;
   const Eigen::Isometry3d T_lidar_board = TransformFromPose(pose);
-  const Eigen::AngleAxisd turn(T_lidar_board.linear() *
-                               prior.T_lidar_board.linear().transpose());
+  const Eigen::AngleAxisd turn(T_lidar_board.linear() * prior.T_lidar_board.linear().transpose());
   off << turn.angle() * turn.axis(),
       T_lidar_board.translation() - prior.T_lidar_board.translation();
   const Matrix6d both = pose.covariance + prior.covariance;
@@ -342,7 +386,7 @@ Expected<MeasuredBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
   m.outline = SearchOutline(m.view.Outline(), AmongThings(m.model), Eigen::Vector2d::Zero());
   if (m.outline.Unexplained() > kMaxUnexplainedRoughly)
     return Because(LidarBoardMiss::kSizeMismatch);
-  if (auto none = FitPlaneAndOutline(cloud_lidar_m, &m)) return *none;
+  if (auto none = FitPlaneAndOutline(cloud_lidar_m, false, &m)) return *none;
   m.outline.pose = Upright(m.frame, m.outline.pose);
   if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
   return Decide(m, false, beams, cloud_lidar_m, board, options);
@@ -369,7 +413,7 @@ Expected<MeasuredBoard, NoLidarBoard> MeasureExpectedBoard(const BoardPrior& pri
                     std::atan2(m.frame.e2.dot(width_axis), m.frame.e1.dot(width_axis))};
   m.outline.spill_m = m.model.spill_m;
   m.outline.thickness_m = m.model.thickness_m;
-  if (auto none = FitPlaneAndOutline(cloud_lidar_m, &m)) return *none;
+  if (auto none = FitPlaneAndOutline(cloud_lidar_m, true, &m)) return *none;
   if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
   auto decided = Decide(m, true, beams, cloud_lidar_m, board, options);
   if (decided && !FitsIn(decided->board.pose, prior)) return Because(LidarBoardMiss::kNoPlane);

@@ -147,15 +147,6 @@ Eigen::Vector2d OutwardOf(std::size_t edge) {
   return outward[edge];
 }
 
-std::array<OutlineEdge, 4> CountEdges(const std::vector<OutlineBeam>& beams,
-                                      const OutlineModel& model,
-                                      const RectanglePose& pose) {
-  const auto near = BeamsNear(beams, model, pose, Sides(model));
-  std::array<OutlineEdge, 4> edges;
-  for (std::size_t i = 0; i < 4; ++i) edges[i] = CountEdge(near[i], WindowM(model));
-  return edges;
-}
-
 std::array<OutlineEdge, 4> MeasureEdges(const std::vector<OutlineBeam>& beams,
                                         const OutlineModel& model,
                                         const RectanglePose& pose) {

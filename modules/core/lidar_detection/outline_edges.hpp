@@ -24,14 +24,8 @@ struct OutlineEdge {
 /// From the rectangle's centre towards edge `i`, in its axes, unit length.
 Eigen::Vector2d OutwardOf(std::size_t edge);
 
-/// The counts of each edge, in BoardSpec's order (edge i joins corner i to corner i + 1): offset
-/// and slope are left at zero. Cheap.
-std::array<OutlineEdge, 4> CountEdges(const std::vector<OutlineBeam>& beams,
-                                      const OutlineModel& model,
-                                      const RectanglePose& pose);
-
-/// Each edge as a line of its own: the logistic model of OutlineModel with one side and free offset
-/// and slope.
+/// Each edge, in BoardSpec's order (edge i joins corner i to corner i + 1), as a line of its own:
+/// the logistic model of OutlineModel with one side and free offset and slope.
 std::array<OutlineEdge, 4> MeasureEdges(const std::vector<OutlineBeam>& beams,
                                         const OutlineModel& model,
                                         const RectanglePose& pose);

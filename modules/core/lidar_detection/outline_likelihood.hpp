@@ -53,7 +53,7 @@ struct OutlineModel {
   /// Beams that hit beyond the rectangle: more where things may touch it in its plane...
   double stray_hits = 0.01;
   double stray_misses = 0.01;  ///< ...and that miss inside: the board has no holes.
-  double spill_m = 0.0;  ///< Expected, with 1 sigma.
+  double spill_m = 0.0;        ///< Expected, with 1 sigma.
   double spill_sigma_m = 0.002;
   double thickness_m = 0.0;  ///< Expected, with 1 sigma.
   double thickness_sigma_m = 0.01;

@@ -6,8 +6,10 @@
 
 namespace voqcal {
 
-PlaneFrame::PlaneFrame(const PlaneFit& fit)
-    : plane(fit), e1(fit.normal.unitOrthogonal()), e2(fit.normal.cross(e1)) {}
+PlaneFrame::PlaneFrame(const PlaneFit& fit, const Eigen::Vector3d& along)
+    : plane(fit),
+      e1((along - fit.normal.dot(along) * fit.normal).normalized()),
+      e2(fit.normal.cross(e1)) {}
 
 PatchView::PatchView(const BeamIndex& beams, const Eigen::Vector3d& middle_m, double radius_m)
     : radius_m_(radius_m) {

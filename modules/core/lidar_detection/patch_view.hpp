@@ -17,7 +17,8 @@ struct PlaneFrame {
   Eigen::Vector3d e1 = Eigen::Vector3d::UnitX();
   Eigen::Vector3d e2 = Eigen::Vector3d::UnitY();
 
-  explicit PlaneFrame(const PlaneFit& fit);
+  /// @param along  e1 points this way, as far as the plane allows; not along the normal.
+  PlaneFrame(const PlaneFit& fit, const Eigen::Vector3d& along);
 
   Eigen::Vector2d ToPlane(const Eigen::Vector3d& p_m) const {
     return {e1.dot(p_m - plane.point_m), e2.dot(p_m - plane.point_m)};

@@ -66,10 +66,21 @@ std::string SideOf(const Measurement& m, std::size_t edge) {
   return SideInView(outward_lidar, T_lidar_board.translation());
 }
 
+/// " (the ground)" where that is likely.
+std::string JoinedTo(const Measurement& m, std::size_t side) {
+  constexpr double kDown = -0.8;
+  const Eigen::Vector2d outward = OutwardOf(side);
+  const double up = TransformOf(m.frame, m.outline.pose).linear().row(2).head<2>().dot(outward);
+  const SideEvidence& at = m.sides[side];
+  const bool is_ground =
+      up < kDown && at.Count(SideEvidence::Past::kTouch) > at.Count(SideEvidence::Past::kPlane);
+  return is_ground ? " (the ground)" : "";
+}
+
 NoLidarBoard OpenAt(const Measurement& m, std::size_t side) {
   switch (m.sides[side].view) {
     case SideView::kJoined:
-      return {LidarBoardMiss::kJoined, SideOf(m, side)};
+      return {LidarBoardMiss::kJoined, SideOf(m, side) + JoinedTo(m, side)};
     case SideView::kHidden:
       return {LidarBoardMiss::kHidden, SideOf(m, side)};
     case SideView::kCutOff:
@@ -79,6 +90,12 @@ NoLidarBoard OpenAt(const Measurement& m, std::size_t side) {
       break;
   }
   return {LidarBoardMiss::kGap, SideOf(m, side)};
+}
+
+/// Of one side's eight, whatever was concluded from the others.
+int NumPartsOnPlane(const Measurement& m, std::size_t side) {
+  return LookAtSides(m.view.Outline(), m.view.Blocked(), m.model, m.outline.pose, SpacingM(m))[side]
+      .Count(SideEvidence::Past::kPlane);
 }
 
 /// The side that hits come up to least.
@@ -102,7 +119,8 @@ std::array<bool, 4> ToldSides(const Measurement& m,
   for (std::size_t i = 0; i < 4; ++i) {
     const SideEvidence& side = m.sides[i];
     const bool is_last_seen = side.view == SideView::kCutOff && -side.reach_m < max_short_m;
-    is_told[i] = side.view == SideView::kMeasured || (is_last_seen && (is_cropped || is_covered[i]));
+    is_told[i] =
+        side.view == SideView::kMeasured || (is_last_seen && (is_cropped || is_covered[i]));
   }
   return is_told;
 }
@@ -138,17 +156,20 @@ std::optional<NoLidarBoard> Doubt(const Measurement& m,
                                   const Agreement& agreement,
                                   const std::array<bool, 4>& is_told) {
   const auto num_told = std::count(is_told.begin(), is_told.end(), true);
-  const auto open = static_cast<std::size_t>(
-      std::find(is_told.begin(), is_told.end(), false) - is_told.begin());
+  const auto open =
+      static_cast<std::size_t>(std::find(is_told.begin(), is_told.end(), false) - is_told.begin());
   if (num_told == 4) {
-    const double min_covered = agreement.empty <= 1.0 - kMinCovered ? kMinCoveredOfThree : kMinCovered;
-    if (agreement.covered >= min_covered) return {};
+    // Gaps of the scan are no holes, if hits and misses show all of the outline.
+    const bool is_outlined =
+        NumMeasured(m.sides) == 4 && m.sides[LeastReached(m)].reach_m > -kMaxShortM / 2;
+    const bool has_holes = agreement.empty > 1.0 - kMinCovered;
+    if (agreement.covered >= kMinCovered || (is_outlined && !has_holes)) return {};
     return OpenAt(m, LeastReached(m));
   }
-  if (num_told < 3) return OpenAt(m, open);
+  if (num_told < 3 || m.board_hits.size() < kMinHitsOfThree) return OpenAt(m, open);
   // A strip of the board's width may be anything.
   constexpr int kMaxPartsJoined = 5;
-  const bool is_strip = m.sides[open].Count(SideEvidence::Past::kPlane) > kMaxPartsJoined;
+  const bool is_strip = NumPartsOnPlane(m, open) > kMaxPartsJoined;
   if (is_strip || agreement.covered < kMinCoveredOfThree) return OpenAt(m, open);
   return {};
 }

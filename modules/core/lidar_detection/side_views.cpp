@@ -23,7 +23,8 @@ struct Place {
 class SidePlaces {
  public:
   SidePlaces(const OutlineModel& model, const RectanglePose& pose)
-      : T_rectangle_plane_(pose.T_rectangle_plane()), half_m_(model.width_m / 2, model.height_m / 2) {}
+      : T_rectangle_plane_(pose.T_rectangle_plane()),
+        half_m_(model.width_m / 2, model.height_m / 2) {}
 
   Eigen::Vector2d ToRectangle(const Eigen::Vector2d& p_m) const { return T_rectangle_plane_ * p_m; }
   Eigen::Array2d OutsideM(const Eigen::Vector2d& q_m) const { return q_m.array().abs() - half_m_; }
@@ -68,8 +69,8 @@ bool Touches(const BlockedBeam& beam, double outside_m) {
 
 struct SideCount {
   std::array<PartCount, SideEvidence::kNumParts> near, far;
-  int num_hits_inside = 0;
   int num_blocked_inside = 0;
+  int num_joined = 0;
   double reach_m = -1e9;
 
   const PartCount& Part(std::size_t i) const { return near[i].Num() > 0 ? near[i] : far[i]; }
@@ -84,10 +85,13 @@ SideView ViewOf(const SideEvidence& side, const SideCount& count, double max_sho
   const int num_before = side.Count(Past::kBefore);
   const int num_shown = side.Count(Past::kNothing);
   const bool is_reached = -side.reach_m < max_short_m;
-  const bool is_shown =
-      num_shown >= kMinParts || (num_shown > 0 && num_joined + num_before == 0);
-  if (is_reached && is_shown && num_misses >= kMinMisses) return SideView::kMeasured;
+  const bool is_near = -side.reach_m < kJustPastM;  // scan lines may be so far apart
+  const bool is_shown = num_shown >= kMinParts || (num_shown > 0 && num_joined + num_before == 0);
+  if (is_near && is_shown && num_misses >= kMinMisses) return SideView::kMeasured;
   if (!is_reached && count.num_blocked_inside > 2) return SideView::kHidden;
+  // A hand before or in the plane, and nothing else past a side: a cropped cloud, as a rule.
+  const bool is_unseen = side.Count(Past::kUnseen) > num_joined + num_before + num_shown;
+  if (is_unseen) return num_misses > 0 ? SideView::kGap : SideView::kCutOff;
   if (num_joined > 0 && num_joined >= num_before) return SideView::kJoined;
   if (num_before > 0) return SideView::kHidden;
   return num_shown + num_misses > 0 ? SideView::kGap : SideView::kCutOff;
@@ -122,6 +126,7 @@ std::array<SideEvidence, 4> LookAtSides(const std::vector<OutlineBeam>& beams,
       }
       if (place->outside_m < 0) continue;
       PartCount* part = part_at(*place);
+      if (part != nullptr && beam.is_hit) counts[i].num_joined += place->outside_m > kWellPastM;
       if (part != nullptr) ++(beam.is_hit ? part->num_hits : part->num_misses);
     }
   }
@@ -143,6 +148,7 @@ std::array<SideEvidence, 4> LookAtSides(const std::vector<OutlineBeam>& beams,
   std::array<SideEvidence, 4> sides;
   for (std::size_t i = 0; i < 4; ++i) {
     sides[i].reach_m = counts[i].reach_m;
+    sides[i].num_joined = counts[i].num_joined;
     for (std::size_t k = 0; k < SideEvidence::kNumParts; ++k) {
       sides[i].past[k] = counts[i].Part(k).What();
     }
@@ -157,12 +163,19 @@ std::vector<OutlineBeam> TellingBeams(const std::vector<OutlineBeam>& beams,
                                       const std::array<SideEvidence, 4>& sides) {
   const SidePlaces places(model, pose);
   const auto goes_on = [&sides](std::size_t side, std::size_t part) {
-    return sides[side].past[part] == Past::kPlane;
+    const Past past = sides[side].past[part];
+    return past == Past::kPlane || past == Past::kTouch;
   };
+  // What joins a side may reach into the rectangle, unless the side opposite tells where this one
+  // is.
+  std::array<double, 4> margin_m{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool is_told = sides[(i + 2) % 4].view == SideView::kMeasured;
+    margin_m[i] = is_told ? kSideMarginM : (i % 2 == 1 ? model.width_m : model.height_m) / 2;
+  }
   const auto tells = [&](const OutlineBeam& beam) {
     const Eigen::Vector2d q_m = places.ToRectangle(beam.position_m);
     const Eigen::Array2d outside_m = places.OutsideM(q_m);
-    if (outside_m.maxCoeff() < -kSideMarginM) return true;
     if (outside_m.minCoeff() > 0) {
       // Beyond a corner: at the ends of two sides.
       if (!beam.is_hit) return true;
@@ -172,7 +185,7 @@ std::vector<OutlineBeam> TellingBeams(const std::vector<OutlineBeam>& beams,
     }
     for (std::size_t i = 0; i < 4; ++i) {
       const auto place = places.At(q_m, i);
-      if (place && place->outside_m > -kSideMarginM && goes_on(i, place->part)) return false;
+      if (place && place->outside_m > -margin_m[i] && goes_on(i, place->part)) return false;
     }
     return true;
   };

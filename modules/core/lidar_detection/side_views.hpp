@@ -24,6 +24,7 @@ struct SideEvidence {
 
   SideView view = SideView::kGap;
   std::array<Past, kNumParts> past{};
+  int num_joined = 0;    ///< Hits well past it: of a post, a leaf, a hand.
   double reach_m = 0.0;  ///< How far beyond the side the outermost hits lie (< 0: short).
 
   int Count(Past what) const;
@@ -39,7 +40,7 @@ std::array<SideEvidence, 4> LookAtSides(const std::vector<OutlineBeam>& beams,
                                         double spacing_m);
 
 /// The beams that tell of the rectangle: all but those past a part of a side where its plane goes
-/// on, which say nothing of where it ends.
+/// on or something comes up to it, which say nothing of where it ends.
 std::vector<OutlineBeam> TellingBeams(const std::vector<OutlineBeam>& beams,
                                       const OutlineModel& model,
                                       const RectanglePose& pose,

@@ -83,11 +83,9 @@ Props Hands(const Eigen::Isometry3d& T_lidar_board, const Edge& edge) {
   for (const double side : {-1.0, 1.0}) {
     const Eigen::Vector3d grip_m = edge.middle_m - (side + 1) / 2 * edge.depth_m * edge.outward;
     const Eigen::Vector3d outward = -side * edge.outward;
-    const Eigen::Vector3d fingers_m =
-        grip_m - kOverM * outward + 0.02 * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d fingers_m = grip_m - kOverM * outward + 0.02 * Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d wrist_m = grip_m + 0.06 * outward;
-    const Eigen::Vector3d elbow_m =
-        grip_m + 0.15 * outward - kBehindM * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d elbow_m = grip_m + 0.15 * outward - kBehindM * Eigen::Vector3d::UnitZ();
     props.tubes.push_back(
         {T_lidar_board * fingers_m, T_lidar_board * wrist_m, 0.04, Material::kSkin});
     props.tubes.push_back(

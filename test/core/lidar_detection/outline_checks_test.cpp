@@ -1,6 +1,5 @@
 #include "core/lidar_detection/outline_checks.hpp"
 
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -8,46 +7,6 @@
 
 namespace voqcal {
 namespace {
-
-constexpr double kMaxShortM = 0.05;
-constexpr std::array<bool, 4> kAllCovered = {true, true, true, true};
-
-/// Hits come up to it, and misses show that it ends.
-OutlineEdge ShownEdge() {
-  OutlineEdge edge;
-  edge.num_hits = 20;
-  edge.num_misses = 20;
-  edge.reach_m = 0.0;
-  return edge;
-}
-
-/// Four of the sixteen fields have no hit.
-Agreement ThreeQuartersCovered(double empty) {
-  Agreement agreement;
-  agreement.covered = 0.75;
-  agreement.covered_half = {0.5, 0.75, 1.0, 0.75};
-  agreement.empty = empty;
-  return agreement;
-}
-
-TEST(OpenEdge, IsNoneWhereGapsLeaveFieldsUnseenInAShownOutline) {
-  const std::array<OutlineEdge, 4> edges = {ShownEdge(), ShownEdge(), ShownEdge(), ShownEdge()};
-  EXPECT_FALSE(OpenEdge(edges, kAllCovered, ThreeQuartersCovered(0.0), kMaxShortM));
-  // The same fields seen and empty: a board cut off there, or a frame.
-  EXPECT_EQ(OpenEdge(edges, kAllCovered, ThreeQuartersCovered(0.25), kMaxShortM), 0U);
-}
-
-TEST(OpenEdge, GapsAreNoExcuseWhereOneEdgeIsNotShown) {
-  std::array<OutlineEdge, 4> edges = {ShownEdge(), ShownEdge(), ShownEdge(), ShownEdge()};
-  edges[2].reach_m = -0.04;  // the hits end short of it
-  EXPECT_TRUE(OpenEdge(edges, kAllCovered, ThreeQuartersCovered(0.0), kMaxShortM));
-  edges[2] = ShownEdge();
-  edges[2].num_misses = 1;  // a stray one
-  EXPECT_TRUE(OpenEdge(edges, kAllCovered, ThreeQuartersCovered(0.0), kMaxShortM));
-  edges[2] = ShownEdge();
-  edges[2].num_hits = 0;
-  EXPECT_TRUE(OpenEdge(edges, kAllCovered, ThreeQuartersCovered(0.0), kMaxShortM));
-}
 
 TEST(Compare, TellsFieldsThatNoBeamMeetsFromEmptyOnes) {
   OutlineModel model;

@@ -171,7 +171,7 @@ std::vector<OutlineBeam> TellingBeams(const std::vector<OutlineBeam>& beams,
   std::array<double, 4> margin_m{};
   for (std::size_t i = 0; i < 4; ++i) {
     const bool is_told = sides[(i + 2) % 4].view == SideView::kMeasured;
-    margin_m[i] = is_told ? kSideMarginM : (i % 2 == 1 ? model.width_m : model.height_m) / 2;
+    margin_m[i] = is_told ? kSideMarginM : (i % 2 == 1 ? model.width_m : model.height_m) / 4;
   }
   const auto tells = [&](const OutlineBeam& beam) {
     const Eigen::Vector2d q_m = places.ToRectangle(beam.position_m);

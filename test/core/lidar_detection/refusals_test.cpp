@@ -178,8 +178,8 @@ TEST(LidarBoardVerdict, TwoEqualBoardsBeforeNothingAreAmbiguous) {
   scene.num_rings = 64;
   SyntheticBox twin;
   scene.T_lidar_board.translation().y() = -0.75;
-  twin.T_lidar_box.translation() = Eigen::Vector3d(2.35, 0.75, 0.0);
-  twin.half_m = {0.05, kBoard.width_m / 2, kBoard.height_m / 2};
+  twin.T_lidar_box.translation() = Eigen::Vector3d(2.301, 0.75, 0.0);
+  twin.half_m = {0.001, kBoard.width_m / 2, kBoard.height_m / 2};
   scene.boxes.push_back(twin);
   const auto found = DetectLidarBoard(SynthesizeLidarBoard(scene), kBoard, {});
   ASSERT_FALSE(found);

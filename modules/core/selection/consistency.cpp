@@ -131,7 +131,7 @@ class PairTable {
     for (std::size_t i = 0; i < size(); ++i) {
       for (std::size_t j = i + 1; j < size(); ++j) {
         if (candidates[i].sample == candidates[j].sample) continue;  // one of them at most
-        const char agrees = PairErrorOf(i, j).Agrees() ? 1 : 0;
+        const char agrees = Compare(i, j).Agrees() ? 1 : 0;
         agrees_[i * size() + j] = agrees_[j * size() + i] = agrees;
       }
     }
@@ -217,7 +217,7 @@ std::string ReasonFor(std::size_t candidate,
     if (pairs.candidate(i).sample == pairs.candidate(candidate).sample) continue;
     ++num_others;
     if (!pairs.Agree(candidate, i)) ++num_disagreeing;
-    const PairError error = pairs.PairErrorOf(candidate, i);
+    const PairError error = pairs.Compare(candidate, i);
     if (!std::isnan(error.relative) && error.relative <= worst.relative) continue;
     worst = error;
     worst_sample = pairs.candidate(i).sample;

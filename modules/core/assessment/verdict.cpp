@@ -58,7 +58,8 @@ void AddNumber(const std::string& name,
                const std::string& advice,
                std::vector<VerdictCheck>* checks) {
   if (std::isnan(value)) {
-    checks->push_back({name, Grade::kLook, "Unknown: no pose could be held out to tell. Take more samples."});
+    checks->push_back(
+        {name, Grade::kLook, "Unknown: no pose could be held out to tell. Take more samples."});
     return;
   }
   Add(name, GradeOf(value, limits), fact, advice, checks);

@@ -146,6 +146,7 @@ void JudgeOutline(const std::vector<const BoardSample*>& samples,
   for (const BoardSample* sample : samples) {
     for (std::size_t i = 0; i < true_lengths_m.size(); ++i) {
       const double error_m = true_lengths_m[i] - sample->lidar.edge_lengths_m[i];
+      if (std::isnan(error_m)) continue;  // an open edge says nothing of the size
       sum_m += error_m;
       sum_m2 += error_m * error_m;
       ++num_edges;

@@ -1,0 +1,100 @@
+#include "core/scene/scene_solver.hpp"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <ceres/cost_function.h>
+#include <ceres/problem.h>
+#include <ceres/sized_cost_function.h>
+#include <ceres/solver.h>
+
+namespace voqcal {
+namespace {
+
+// Residuals sqrt(2 k w_i surprise_i), whose half sum of squares is the scene's part of the cost.
+class SceneCost final : public ceres::CostFunction {
+ public:
+  SceneCost(const SceneProblem& scene,
+            const std::vector<EdgeField>& fields,
+            Sectors sectors,
+            double scale)
+      : scene_(scene), fields_(fields), scale_(scale) {
+    for (const SceneEdge& edge : scene.edges) {
+      if (IsIn(sectors, edge)) edges_.push_back(&edge);
+    }
+    set_num_residuals(static_cast<int>(edges_.size()));
+    mutable_parameter_block_sizes()->push_back(kSceneParameters);
+  }
+
+  bool Evaluate(const double* const* parameters,
+                double* residuals,
+                double** jacobians) const override {
+    const Eigen::Map<const SceneVector> unknowns(parameters[0]);
+    const LeftPerturbation at(scene_.T_camera_lidar, unknowns.head<6>());
+    const bool wants_J = jacobians != nullptr && jacobians[0] != nullptr;
+    Eigen::Matrix<double, 1, kSceneParameters> J;
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const double surprise =
+          SurpriseAt(*edges_[i], fields_, scene_.camera, at, unknowns[6], wants_J ? &J : nullptr);
+      residuals[i] = std::sqrt(2 * scale_ * edges_[i]->weight * surprise);
+      if (!wants_J) continue;
+      Eigen::Map<Eigen::Matrix<double, 1, kSceneParameters>> row(jacobians[0] +
+                                                                 kSceneParameters * i);
+      row = scale_ * edges_[i]->weight / residuals[i] * J;
+    }
+    return true;
+  }
+
+ private:
+  const SceneProblem& scene_;
+  const std::vector<EdgeField>& fields_;
+  double scale_;
+  std::vector<const SceneEdge*> edges_;
+};
+
+// What was known before: residuals L' x with L L' the information.
+class PriorCost final : public ceres::SizedCostFunction<kSceneParameters, kSceneParameters> {
+ public:
+  explicit PriorCost(const SceneMatrix& information)
+      : J_(SceneMatrix(information.llt().matrixL()).transpose()) {}
+
+  bool Evaluate(const double* const* parameters,
+                double* residuals,
+                double** jacobians) const override {
+    const Eigen::Map<const SceneVector> unknowns(parameters[0]);
+    Eigen::Map<SceneVector> r(residuals);
+    r = J_ * unknowns;
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    Eigen::Map<Eigen::Matrix<double, kSceneParameters, kSceneParameters, Eigen::RowMajor>> J(
+        jacobians[0]);
+    J = J_;
+    return true;
+  }
+
+ private:
+  SceneMatrix J_;
+};
+
+}  // namespace
+
+void MinimiseAt(const SceneProblem& scene,
+                const std::vector<EdgeField>& fields,
+                Sectors sectors,
+                double scale,
+                int max_iterations,
+                SceneVector* unknowns) {
+  ceres::Problem problem;
+  problem.AddResidualBlock(new SceneCost(scene, fields, sectors, scale), nullptr, unknowns->data());
+  problem.AddResidualBlock(new PriorCost(scene.prior), nullptr, unknowns->data());
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.num_threads = 1;  // the same sum each time
+  options.logging_type = ceres::SILENT;
+  options.max_num_iterations = max_iterations;
+  options.function_tolerance = 1e-7;
+  options.parameter_tolerance = 1e-7;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+}
+
+}  // namespace voqcal

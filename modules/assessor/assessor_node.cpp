@@ -121,13 +121,10 @@ void AssessorNode::UpdateAssessment() {
 }
 
 CalibrationResult AssessorNode::Result() {
-  const auto scene_views = [this](const std::vector<const BoardSample*>& samples) {
-    return views_.Of(samples);
-  };
   CalibrationResult result{Assess(ChosenOf(*samples_, *averaged_),
                                   FromMessage(*averaged_),
                                   FromMessage(*refined_),
-                                  scene_views,
+                                  scene_views_,
                                   rig_.Task()),
                            {}};
   result.made_from = {samples_->log_sha256, rig_.sha256, VOQCAL_VERSION};

@@ -121,11 +121,11 @@ void AssessorNode::UpdateAssessment() {
 }
 
 CalibrationResult AssessorNode::Result() {
-  CalibrationResult result{Assess(ChosenOf(*samples_, *averaged_),
-                                  FromMessage(*averaged_),
-                                  FromMessage(*refined_),
-                                  scene_views_,
-                                  rig_.Task()),
+  CalibrationResult result{voqcal::Assess(ChosenOf(*samples_, *averaged_),
+                                          FromMessage(*averaged_),
+                                          FromMessage(*refined_),
+                                          scene_views_,
+                                          rig_.Task()),
                            {}};
   result.made_from = {samples_->log_sha256, rig_.sha256, VOQCAL_VERSION};
   return result;

@@ -2,10 +2,12 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/tool_main.hpp"
@@ -54,26 +56,41 @@ class SceneCollector {
   const std::vector<SceneView>& views() const { return views_; }
 
   void Add(const LogEvent& event) {
-    if (event.channel == rig_.channels.lidar_points) sweep_ = Decode<pointcloud2_t>(event);
-    if (event.channel == rig_.channels.camera_image) image_ = Decode<image_t>(event);
-    if (!sweep_ || !image_) return;
-    const double apart_us = static_cast<double>(std::abs(sweep_->utime - image_->utime));
-    if (apart_us > 1e3 * args_.max_apart_ms) return;
-    if (last_utime_ && static_cast<double>(sweep_->utime - *last_utime_) < 1e6 * args_.every_s) {
-      return;
+    if (event.channel == rig_.channels.lidar_points) Keep(Decode<pointcloud2_t>(event), &sweeps_);
+    if (event.channel == rig_.channels.camera_image) Keep(Decode<image_t>(event), &images_);
+    for (const pointcloud2_t& sweep : sweeps_) {
+      for (const image_t& image : images_) {
+        if (AddPair(sweep, image)) return;
+      }
     }
-    last_utime_ = sweep_->utime;
-    views_.push_back(MakeSceneView(
-        FromMessage(*sweep_), FromMessage(*image_), rig_.camera, rig_.scene_check.view));
-    sweep_.reset();
-    image_.reset();
   }
 
  private:
+  // Either sensor's messages may come late by some of the other's.
+  template <typename Message>
+  static void Keep(std::optional<Message> message, std::deque<Message>* kept) {
+    constexpr std::size_t kNumKept = 5;
+    if (!message) return;
+    kept->push_back(std::move(*message));
+    if (kept->size() > kNumKept) kept->pop_front();
+  }
+
+  bool AddPair(const pointcloud2_t& sweep, const image_t& image) {
+    const double apart_us = static_cast<double>(std::abs(sweep.utime - image.utime));
+    if (apart_us > 1e3 * args_.max_apart_ms) return false;
+    if (last_utime_ && static_cast<double>(sweep.utime - *last_utime_) < 1e6 * args_.every_s) {
+      return false;
+    }
+    last_utime_ = sweep.utime;
+    views_.push_back(
+        MakeSceneView(FromMessage(sweep), FromMessage(image), rig_.camera, rig_.scene_check.view));
+    return true;
+  }
+
   const Rig& rig_;
   const CheckArgs& args_;
-  std::optional<pointcloud2_t> sweep_;
-  std::optional<image_t> image_;
+  std::deque<pointcloud2_t> sweeps_;
+  std::deque<image_t> images_;
   std::optional<std::int64_t> last_utime_;
   std::vector<SceneView> views_;
 };

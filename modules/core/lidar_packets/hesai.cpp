@@ -187,7 +187,7 @@ PacketDecoder MakeDecoder(const Format& format, BeamTable beams, const LidarUnit
   };
 }
 
-// The manuals' tables of laser firing times.
+// Times at which the lasers fire, before the end of their block, rounded.
 double Pandar40LaserUs(int channel) {
   constexpr double kUs[] = {-42.22, -28.47, -16.04, -3.62,  -45.49, -31.74, -47.46, -54.67,
                             -20.62, -33.71, -40.91, -8.19,  -20.62, -27.16, -50.73, -8.19,

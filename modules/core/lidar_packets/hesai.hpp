@@ -9,8 +9,10 @@ namespace voqcal {
 // often a number. With two or three returns, neighbouring blocks hold those of one firing.
 //
 // Azimuth 0 is along y, as in Hesai's own frame and drivers. A unit's calibration is its angle
-// correction file (CSV: channel, elevation, azimuth in degrees). Without it angles are those of
-// the vendor's published files, from which units differ by some tenths of a degree.
+// correction file (CSV: channel, elevation, azimuth in degrees). Without it QT64, XT32M and OT128
+// take the vendor's published angles. Those of 40P, 64, QT128, XT16 and XT32 were recovered from
+// clouds that another decoder made of one unit's packets: another unit differs by some tenths of a
+// degree.
 
 PacketDecoder MakeHesai40p(const LidarUnit& unit);
 PacketDecoder MakeHesai64(const LidarUnit& unit);

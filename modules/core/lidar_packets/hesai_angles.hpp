@@ -4,7 +4,7 @@
 
 namespace voqcal {
 
-// The angles that Hesai publishes for each model, by channel.
+// Angles by channel, where no unit's own file is given (hesai.hpp says where they come from).
 BeamTable Hesai40pBeams();
 BeamTable Hesai64Beams();
 BeamTable HesaiQt64Beams();

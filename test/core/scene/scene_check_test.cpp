@@ -211,7 +211,7 @@ TEST(MakeSceneView, RefusesAnImageOfAnotherSize) {
 TEST(SceneCheckOptions, NamesEachProblem) {
   SceneCheckOptions options;
   options.tolerance_rad = 0;
-  options.view.min_jump_m = -1;
+  options.view.edges.min_jump_m = -1;
   EXPECT_THAT(options.Problems(),
               ::testing::ElementsAre("min_jump_m must be positive, is -1",
                                      "tolerance_rad must be positive, is 0"));

@@ -88,11 +88,12 @@ SceneMatrix CurvatureAt(const SceneProblem& scene, const SceneVector& unknowns) 
 SceneTrust TrustAt(const SceneProblem& scene, const SceneVector& unknowns) {
   const SceneMatrix H = CurvatureAt(scene, unknowns);
   const SceneMatrix G = ScatterAt(scene, unknowns);
-  const double gain = 1 / MeanSurprise(scene, kAllSectors, unknowns) - 1;  // a - 1
+  // a - 1; below nothing fits where it is, and the coarse levels have yet to find what does.
+  constexpr double kLeastGain = 0.2;
+  const double gain = std::max(kLeastGain, 1 / MeanSurprise(scene, kAllSectors, unknowns) - 1);
   SceneTrust trust;
   const SceneVector squares = Steps().cwiseAbs2();
-  trust.scale =
-      std::min(H.diagonal().dot(squares) / G.diagonal().dot(squares), std::max(gain, 0.0));
+  trust.scale = std::min(H.diagonal().dot(squares) / G.diagonal().dot(squares), gain);
   trust.redundancy = gain / trust.scale;
   return trust;
 }

@@ -48,7 +48,9 @@ TEST(LidarPoseInCameraOrder, UndoesAHalfTurn) {
 }
 
 TEST(PointReprojectionCost, JacobianAgreesWithDifferences) {
-  const PointReprojectionCost cost(test::TestCamera(), RoughStart(), {2.0, 0.4, -0.3}, {900, 700});
+  const Eigen::Matrix2d trust = (Eigen::Matrix2d() << 0.9, 0.1, 0.1, 0.4).finished();
+  const PointReprojectionCost cost(
+      test::TestCamera(), RoughStart(), {2.0, 0.4, -0.3}, {900, 700}, trust);
   Vector6d delta;
   delta << 0.3, -0.2, 0.1, 0.05, -0.1, 0.2;
   const double* parameters = delta.data();
@@ -71,7 +73,8 @@ TEST(PointReprojectionCost, JacobianAgreesWithDifferences) {
 }
 
 TEST(PointReprojectionCost, FailsBehindTheCamera) {
-  const PointReprojectionCost cost(test::TestCamera(), RoughStart(), {-2.0, 0.4, -0.3}, {900, 700});
+  const PointReprojectionCost cost(
+      test::TestCamera(), RoughStart(), {-2.0, 0.4, -0.3}, {900, 700}, Eigen::Matrix2d::Identity());
   const Vector6d delta = Vector6d::Zero();
   const double* parameters = delta.data();
   Eigen::Vector2d r;

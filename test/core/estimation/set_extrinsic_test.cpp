@@ -65,7 +65,8 @@ TEST(SetCost, JacobianAgreesWithDifferences) {
   const CameraModel camera = test::TestCamera();
   const SetExtrinsicOptions options;
   const Eigen::Isometry3d T_start = test::TestExtrinsic();
-  const auto poses = SetPosesOf(test::Pointers(samples), camera);
+  const auto poses =
+      SetPosesOf(test::Pointers(samples), camera, test::TestExtrinsic().linear(), options);
   const SetCost cost{poses, camera, T_start, options};
   Vector6d delta;
   delta << 0.2, -0.1, 0.15, 0.1, 0.05, -0.2;  // away from zero, where the chart's Jacobian matters
@@ -91,7 +92,8 @@ TEST(SetCost, FailsBehindTheCamera) {
   const CameraModel camera = test::TestCamera();
   const SetExtrinsicOptions options;
   const Eigen::Isometry3d T_start = test::TestExtrinsic();
-  const auto poses = SetPosesOf(test::Pointers(samples), camera);
+  const auto poses =
+      SetPosesOf(test::Pointers(samples), camera, test::TestExtrinsic().linear(), options);
   const SetCost cost{poses, camera, T_start, options};
   Vector6d delta = Vector6d::Zero();
   delta[5] = -10.0;
@@ -115,7 +117,8 @@ TEST(EstimateSetExtrinsic, IsAMinimum) {
   ASSERT_TRUE(set.IsUsable());
   const CameraModel camera = test::TestCamera();
   const SetExtrinsicOptions options;
-  const auto poses = SetPosesOf(test::Pointers(samples), camera);
+  const auto poses =
+      SetPosesOf(test::Pointers(samples), camera, test::TestExtrinsic().linear(), options);
   const SetCost cost{poses, camera, set.T_camera_lidar, options};
   Eigen::VectorXd r(cost.NumResiduals());
   for (int i = 0; i < 12; ++i) {

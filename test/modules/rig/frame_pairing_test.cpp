@@ -14,7 +14,7 @@ using Names = std::vector<std::string>;
 
 FrameFolder FolderOf(const test::TemporaryFolder& folder, const Names& names, bool are_places) {
   for (const std::string& name : names) folder.Write(name, "");
-  DriverOptions options;
+  FrameOptions options;
   options.folder = folder.path();
   return {options, {".pcd", ".png"}, are_places};
 }

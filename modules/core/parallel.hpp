@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include <system_error>
+
 namespace voqcal {
 
 /// Calls `work(i)` for each i below `num`, on as many threads as the machine has cores. What each
@@ -28,7 +30,11 @@ void ParallelFor(std::size_t num, const Work& work) {
   const std::size_t num_threads =
       std::min<std::size_t>(num, std::max(1U, std::thread::hardware_concurrency()));
   std::vector<std::thread> threads;
-  for (std::size_t i = 1; i < num_threads; ++i) threads.emplace_back(take_turns);
+  try {
+    for (std::size_t i = 1; i < num_threads; ++i) threads.emplace_back(take_turns);
+  } catch (const std::system_error&) {
+    // The host allows no more: those that there are do it all.
+  }
   take_turns();
   for (std::thread& thread : threads) thread.join();
   for (const std::exception_ptr& error : errors) {

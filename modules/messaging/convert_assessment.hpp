@@ -2,9 +2,9 @@
 
 #include "core/assessment/diagnosis.hpp"
 #include "core/assessment/predicted_error.hpp"
-#include "core/scene/scene_check.hpp"
 #include "core/assessment/score_bins.hpp"
 #include "core/assessment/verdict.hpp"
+#include "core/scene/scene_check.hpp"
 #include "voqcal/finding_t.hpp"
 #include "voqcal/predicted_error_t.hpp"
 #include "voqcal/scene_check_t.hpp"

@@ -16,7 +16,6 @@ class Pacer {
             std::chrono::duration<double>(1.0 / rate_hz))),
         next_(Clock::now()) {}
 
-  bool IsDue() const { return Clock::now() >= next_; }
   Clock::time_point Next() const { return next_; }
   void Advance() {
     next_ += period_;

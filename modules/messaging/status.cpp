@@ -1,9 +1,9 @@
 #include "messaging/status.hpp"
 
-#include <climits>
 #include <cstring>
 #include <utility>
 
+#include <climits>
 #include <unistd.h>
 
 #include "messaging/wall_clock.hpp"

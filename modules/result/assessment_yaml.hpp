@@ -5,8 +5,8 @@
 
 #include "core/assessment/diagnosis.hpp"
 #include "core/assessment/predicted_error.hpp"
-#include "core/scene/scene_check.hpp"
 #include "core/assessment/score_bins.hpp"
+#include "core/scene/scene_check.hpp"
 
 namespace voqcal {
 

@@ -10,7 +10,6 @@
 
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/diagnosis.hpp"
-#include "core/scene/scene_check.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/calibration/calibrate.hpp"
 #include "core/camera/camera_model.hpp"
@@ -21,6 +20,7 @@
 #include "core/lidar_detection/lidar_board.hpp"
 #include "core/lidar_packets/packet_stream.hpp"
 #include "core/sampling/sample_picker.hpp"
+#include "core/scene/scene_check.hpp"
 #include "core/selection/consistency.hpp"
 #include "core/selection/select_sets.hpp"
 #include "core/simulation/simulation.hpp"

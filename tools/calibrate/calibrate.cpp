@@ -90,10 +90,9 @@ void RunCalibrate(const CalibrateArgs& args) {
   run->Finish(/*is_collecting_only=*/false);
   const std::string wrong_sign = WrongOffsetSign(run->samples(), rig.board);
   if (!run->assessor().result()) {
-    throw std::runtime_error(
-        Given(args) + ": no calibration: " + run->assessor().problem() + " (" +
-        CountsOf(*run) + ")" + EarlierResultIn(args.out) + FailureAdvice(*run) +
-        (wrong_sign.empty() ? "" : "\n" + wrong_sign));
+    throw std::runtime_error(Given(args) + ": no calibration: " + run->assessor().problem() + " (" +
+                             CountsOf(*run) + ")" + EarlierResultIn(args.out) +
+                             FailureAdvice(*run) + (wrong_sign.empty() ? "" : "\n" + wrong_sign));
   }
   const std::string report_problem = WriteReport(rig, *run, scratch.path());
   Deliver(scratch.path(), args.out);

@@ -142,7 +142,9 @@ int Check(const CheckArgs& args) {
   const SceneAgreement agreement =
       CheckAgreement(ViewsOf(rig, args), rig.camera, T_camera_lidar, {});
   Print(agreement);
-  if (args.refine) {
+  if (args.refine && agreement.all == Agreement::kCannotTell) {
+    std::printf("%s is not written: the scenes cannot tell\n", args.refine->c_str());
+  } else if (args.refine) {
     WriteFileAtomically(*args.refine,
                         "T_camera_lidar:  # refined by scenes alone\n" +
                             TransformYaml(PerturbLeft(T_camera_lidar, agreement.asked), "  "));

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <spdlog/spdlog.h>
+#include <system_error>
 
 #include "common/progress.hpp"
 #include "files/atomic_file.hpp"
@@ -40,8 +40,8 @@ class EventWriter {
 };
 
 FrameOptions FolderOptions(const std::filesystem::path& folder,
-                            const std::string& file_ending,
-                            double rate_hz) {
+                           const std::string& file_ending,
+                           double rate_hz) {
   FrameOptions options;
   options.folder = folder;
   options.file_ending = file_ending;

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <stdexcept>
 #include <string>
+
 #include <system_error>
 
 #include "common/output_file.hpp"

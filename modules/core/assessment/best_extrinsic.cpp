@@ -107,8 +107,8 @@ Matrix6d CovarianceOfAverage(const std::vector<const BoardSample*>& samples,
   return covariance;
 }
 
-// The named one; else the joint one; else the least error that is known. Without any score to go by,
-// the average.
+// The named one; else the joint one; else the least error that is known. Without any score to go
+// by, the average.
 const MethodTrial& Choose(const std::vector<MethodTrial>& trials,
                           const std::optional<RefineMethod>& named) {
   const MethodTrial* best = &trials.front();

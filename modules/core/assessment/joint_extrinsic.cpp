@@ -32,7 +32,7 @@ JointExtrinsic RefineJointly(const RefinedExtrinsic& reprojection,
   }
   const UncertainExtrinsic robust{reprojection.T_camera_lidar, reprojection.covariance};
   joint.board.extrinsic = robust;
-  if (likelihood != nullptr) {
+  if (likelihood != nullptr && likelihood->uncertainty.covariance.allFinite()) {
     joint.board = Combine(robust, {likelihood->T_camera_lidar, likelihood->uncertainty.covariance});
   }
   joint.scene = RefineByScene(views,
@@ -40,6 +40,7 @@ JointExtrinsic RefineJointly(const RefinedExtrinsic& reprojection,
                               joint.board.extrinsic.T_camera_lidar,
                               joint.board.extrinsic.covariance,
                               options);
+  if (!joint.scene.T_camera_lidar.matrix().allFinite()) joint.problem = "the refinement diverges";
   return joint;
 }
 

@@ -67,8 +67,7 @@ PoseScore ScorePose(const BoardSample& sample,
   const Eigen::Vector3d centre_camera_m = T_camera_lidar * lidar.centre_m;
   if (!camera.IsInFront(centre_camera_m) || !camera.IsInFront(seen.centre_m)) return {};
   PoseScore score;
-  score.normal_deg =
-      kDegPerRad * AngleBetween(T_camera_lidar.linear() * lidar.normal, seen.normal);
+  score.normal_deg = kDegPerRad * AngleBetween(T_camera_lidar.linear() * lidar.normal, seen.normal);
   if (!IsCentreMeasured(sample.lidar)) return score;
   score.centre_px = (camera.Project(centre_camera_m) - camera.Project(seen.centre_m)).norm();
   score.centre_mm = kMmPerM * MetresPerPixel(seen, camera) * score.centre_px;

@@ -96,7 +96,7 @@ struct CalibrationOutcome {
       problem;  ///< Of the first step that gave nothing, a sentence; empty if all went well.
 };
 
-/// The whole method: samples that agree, sets of lowest VOQ, their average, its refinement over
+/// The whole method: samples that agree, the best sets, their average, its refinement over
 /// every pose, the assessment.
 /// @throws std::invalid_argument if an option has Problems().
 CalibrationOutcome Calibrate(const std::vector<BoardSample>& samples,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -173,6 +174,7 @@ std::vector<BoardSample> WithRangeOffset(const std::vector<const BoardSample*>& 
   std::vector<BoardSample> moved(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     moved[i].lidar.pose = samples[i]->lidar.pose;
+    moved[i].lidar.sides = samples[i]->lidar.sides;
     moved[i].camera.pose = samples[i]->camera.pose;
     BoardPose& pose = moved[i].lidar.pose;
     pose.centre_m += offset_m * pose.centre_m.normalized();
@@ -181,17 +183,29 @@ std::vector<BoardSample> WithRangeOffset(const std::vector<const BoardSample*>& 
   return moved;
 }
 
+std::vector<const BoardSample*> PointersTo(const std::vector<BoardSample>& samples) {
+  std::vector<const BoardSample*> pointers;
+  for (const BoardSample& sample : samples) pointers.push_back(&sample);
+  return pointers;
+}
+
 // How the minimum moves if all ranges are longer by `offset_m`: A^-1 of the pull by the residuals
-// that this adds.
+// that this adds. Where a board then leaves the lens, all shorter: only the square is used.
 Vector6d MoveByRangeOffset(const std::vector<const BoardSample*>& samples,
                            const CameraModel& camera,
                            const Eigen::Isometry3d& T_camera_lidar,
                            const RefineOptions& options,
                            const Linearisation& linear,
                            const Matrix6d& curvature_inverse) {
-  const std::vector<BoardSample> moved = WithRangeOffset(samples, options.range_offset_m);
-  std::vector<const BoardSample*> pointers;
-  for (const BoardSample& sample : moved) pointers.push_back(&sample);
+  std::vector<BoardSample> moved = WithRangeOffset(samples, options.range_offset_m);
+  std::vector<const BoardSample*> pointers = PointersTo(moved);
+  if (!AllVisible(pointers, camera, T_camera_lidar)) {
+    moved = WithRangeOffset(samples, -options.range_offset_m);
+    pointers = PointersTo(moved);
+  }
+  if (!AllVisible(pointers, camera, T_camera_lidar)) {
+    return Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
   const auto terms = MakeRefineTerms(pointers, camera, T_camera_lidar, options);
   const Linearisation there = LineariseAtStart(terms, samples.size(), options.huber_px);
   Vector6d pull = Vector6d::Zero();

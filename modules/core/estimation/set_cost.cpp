@@ -18,9 +18,9 @@ Eigen::Matrix3d CentreTrust(const LidarBoard& lidar,
 }
 
 std::vector<SetPose> SetPosesOf(const std::vector<const BoardSample*>& set,
-                             const CameraModel& camera,
-                             const Eigen::Matrix3d& R_camera_lidar,
-                             const SetExtrinsicOptions& options) {
+                                const CameraModel& camera,
+                                const Eigen::Matrix3d& R_camera_lidar,
+                                const SetExtrinsicOptions& options) {
   std::vector<SetPose> poses;
   for (const BoardSample* sample : set) {
     const BoardPose& lidar = sample->lidar.pose;

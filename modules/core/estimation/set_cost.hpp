@@ -26,9 +26,9 @@ struct SetPose {
 
 /// @param R_camera_lidar  roughly: turns what open sides leave uncertain into the camera's axes.
 std::vector<SetPose> SetPosesOf(const std::vector<const BoardSample*>& set,
-                             const CameraModel& camera,
-                             const Eigen::Matrix3d& R_camera_lidar,
-                             const SetExtrinsicOptions& options);
+                                const CameraModel& camera,
+                                const Eigen::Matrix3d& R_camera_lidar,
+                                const SetExtrinsicOptions& options);
 
 /// SetPose::centre_trust: (I + C / sigma_centre^2)^-1/2 with C the centre's covariance in the
 /// camera's axes; one for a whole sighting, whose errors the options tell.

@@ -127,7 +127,8 @@ SetExtrinsic EstimateSetExtrinsic(const std::vector<const BoardSample*>& set,
   result.T_camera_lidar = T_camera_lidar_start;
   if (!AllInFront(set, camera, T_camera_lidar_start)) return result;
 
-  const std::vector<SetPose> poses = SetPosesOf(set, camera, T_camera_lidar_start.linear(), options);
+  const std::vector<SetPose> poses =
+      SetPosesOf(set, camera, T_camera_lidar_start.linear(), options);
   const SetCost cost{poses, camera, T_camera_lidar_start, options};
   ceres::TinySolver<SetCost> solver;
   solver.options.max_num_iterations = options.max_iterations;

@@ -9,6 +9,7 @@ namespace voqcal {
 namespace {
 
 Agreement Judge(double asked, double sigma, double max_sigma, double tolerance, double num_sigmas) {
+  if (!std::isfinite(asked) || !std::isfinite(sigma)) return Agreement::kCannotTell;
   if (std::abs(asked) > std::max(tolerance, num_sigmas * sigma)) return Agreement::kDisagrees;
   return sigma > max_sigma ? Agreement::kCannotTell : Agreement::kAgrees;
 }

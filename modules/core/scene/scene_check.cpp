@@ -36,9 +36,11 @@ double RankAt(const SceneView& view, const Eigen::Vector2d& pixel_px) {
   const Eigen::Vector2d at = Reduced(pixel_px, view.reduction);
   const double left = std::floor(at.x());
   const double top = std::floor(at.y());
+  const bool is_inside = left >= 0 && top >= 0 && left + 1 < view.edge_rank.cols &&
+                         top + 1 < view.edge_rank.rows;  // false for NaN
+  if (!is_inside) return -1;
   const int x = static_cast<int>(left);
   const int y = static_cast<int>(top);
-  if (x < 0 || y < 0 || x + 1 >= view.edge_rank.cols || y + 1 >= view.edge_rank.rows) return -1;
   const uchar* upper = view.edge_rank.ptr<uchar>(y) + x;
   const uchar* lower = view.edge_rank.ptr<uchar>(y + 1) + x;
   if (upper[0] == 0 || upper[1] == 0 || lower[0] == 0 || lower[1] == 0) return -1;

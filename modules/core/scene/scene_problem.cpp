@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <Eigen/Eigenvalues>
 
@@ -76,7 +77,9 @@ SceneMatrix CurvatureAt(const SceneProblem& scene, const SceneVector& unknowns) 
   const SceneMatrix scaled =
       step.asDiagonal() * (0.5 * (curvature + curvature.transpose())) * step.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<SceneMatrix> eigen(scaled);
-  const SceneVector values = eigen.eigenvalues().cwiseMax(1e-3 * eigen.eigenvalues().maxCoeff());
+  constexpr double kFlat = 1e-12;  // where it bends nowhere, next to nothing is known
+  const double least = std::max(kFlat, 1e-3 * eigen.eigenvalues().maxCoeff());
+  const SceneVector values = eigen.eigenvalues().cwiseMax(least);
   const SceneMatrix positive =
       eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
   const SceneVector unit = step.cwiseInverse();
@@ -93,7 +96,9 @@ SceneTrust TrustAt(const SceneProblem& scene, const SceneVector& unknowns) {
   const double gain = std::max(kLeastGain, 1 / MeanSurprise(scene, kAllSectors, unknowns) - 1);
   SceneTrust trust;
   const SceneVector squares = Steps().cwiseAbs2();
-  trust.scale = std::min(H.diagonal().dot(squares) / G.diagonal().dot(squares), gain);
+  constexpr double kLeastScale = 1e-6;
+  const double scale = H.diagonal().dot(squares) / G.diagonal().dot(squares);
+  trust.scale = std::isfinite(scale) ? std::clamp(scale, kLeastScale, gain) : kLeastScale;
   trust.redundancy = gain / trust.scale;
   return trust;
 }

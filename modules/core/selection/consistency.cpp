@@ -228,9 +228,8 @@ std::string ReasonFor(std::size_t candidate,
   text << "disagrees with " << num_disagreeing << " of " << num_others
        << " consistent samples; worst with sample " << samples[worst_sample].id
        << ": centre distances differ by " << 1000.0 * worst.distance_m << " mm (limit "
-       << 1000.0 * worst.max_distance_m << "), normal angles by "
-       << kDegPerRad * worst.angle_rad << " deg (limit "
-       << kDegPerRad * worst.max_angle_rad << ")";
+       << 1000.0 * worst.max_distance_m << "), normal angles by " << kDegPerRad * worst.angle_rad
+       << " deg (limit " << kDegPerRad * worst.max_angle_rad << ")";
   return text.str();
 }
 

@@ -16,8 +16,6 @@ class BeamRays {
   /// Unit directions of the rays around a beam's centre; just the centre if the beam has no width.
   std::vector<Eigen::Vector3d> Around(const Eigen::Vector3d& centre) const;
 
-  double HalfWidthRad() const { return divergence_rad_ / 2; }
-
  private:
   double divergence_rad_;
   std::array<Eigen::Vector2d, 18> unit_circle_;  ///< Cosine and sine of each ray's place.

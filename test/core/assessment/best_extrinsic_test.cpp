@@ -93,7 +93,7 @@ TEST(RefineBest, LeavesAnAverageWhoseErrorIsUnknown) {
   }
   AveragedExtrinsic average = RoughAverage();
   average.T_camera_lidar.pretranslate(Eigen::Vector3d(0, 0, -nearest_m - 0.05));
-  const BestExtrinsic best = RefineBest(all, test::TestCamera(), average, RefinerOptions{});
+  const BestExtrinsic best = RefineBest(all, test::TestCamera(), average, {}, RefinerOptions{});
   ASSERT_TRUE(std::isnan(best.trials[0].ErrorMm()));
   ASSERT_TRUE(best.trials[2].problem.empty()) << best.trials[2].problem;
   EXPECT_EQ(best.method, RefineMethod::kLikelihood);

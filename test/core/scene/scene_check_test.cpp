@@ -170,7 +170,9 @@ TEST(MakeSceneView, TakesTheNearerSideOfAJumpHalfWayToTheNextRay) {
   const SceneView view = MakeSceneView(cloud, image, sample, test::TestBoard(), camera, {});
   ASSERT_THAT(view.edges, SizeIs(1));
   EXPECT_NEAR(view.edges[0].position_lidar_m.norm(), 2.0, 1e-5);
-  EXPECT_NEAR(std::atan2(view.edges[0].position_lidar_m.y(), view.edges[0].position_lidar_m.x()), 0.102, 1e-5);
+  EXPECT_NEAR(std::atan2(view.edges[0].position_lidar_m.y(), view.edges[0].position_lidar_m.x()),
+              0.102,
+              1e-5);
 }
 
 TEST(MakeSceneView, LeavesTheBoardOut) {

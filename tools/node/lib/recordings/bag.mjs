@@ -101,13 +101,22 @@ class Connections {
   }
 }
 
+/** What there is of the record at a file's end; undefined where not even its header is whole. */
+function cutRecordAt(file, at) {
+  try {
+    return recordAt((from, length) => file.at(from, Math.min(length, file.numBytes - from)), at);
+  } catch {
+    return undefined;
+  }
+}
+
 /** Every message in the order of the file, each chunk's by time. */
 function* scannedMessages(file, decompress, connections, remarks) {
   for (let at = BAG_MAGIC.length; at < file.numBytes; ) {
     const record = recordAt((from, length) => file.at(from, length), at);
     if (record === undefined) {
       remarks.push(`is cut off or damaged at byte ${at} of ${file.numBytes}: what is before it is read`);
-      const cut = recordAt((from, length) => file.at(from, Math.min(length, file.numBytes - from)), at);
+      const cut = cutRecordAt(file, at);
       if (cut?.op === OP.CHUNK) yield* inOrder(chunkMessages(cut, at, decompress, connections, []));
       return;
     }

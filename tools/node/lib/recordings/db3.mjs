@@ -72,6 +72,7 @@ const unpacked = (data, zstd) =>
 
 async function* rows(path, ids) {
   const child = spawn("python3", [SCRIPT, path, ...ids.map(String)], { stdio: ["ignore", "pipe", "ignore"] });
+  const ended = new Promise((resolve) => child.once("close", resolve));
   try {
     const read = exactReader(child.stdout);
     for (let head = await read(FRAME_BYTES); head; head = await read(FRAME_BYTES)) {
@@ -79,6 +80,7 @@ async function* rows(path, ids) {
       if (data === undefined) return;
       yield { id: head.readUInt32LE(0), logTimeNs: head.readBigInt64LE(4), data };
     }
+    if ((await ended) !== 0) yield { id: DAMAGED, logTimeNs: 0n, data: "its reader ended early" };
   } finally {
     child.kill();
   }

@@ -87,9 +87,11 @@ TEST(SetCost, JacobianAgreesWithDifferences) {
   }
 }
 
-TEST(SetCost, FailsBehindTheCamera) {
+TEST(SetCost, FailsWhereTheLensShowsNothing) {
   const auto samples = Scene(3, 0.0);
-  const CameraModel camera = test::TestCamera();
+  CameraModel camera = test::TestCamera();
+  camera.lens = LensModel::kPlumbBob;
+  camera.distortion = {0, 0, 0, 0, 0};
   const SetExtrinsicOptions options;
   const Eigen::Isometry3d T_start = test::TestExtrinsic();
   const auto poses =

@@ -78,7 +78,6 @@ void ReadBoard(YamlSection* top, BoardSpec* board) {
   section.ReadRequired("height_m", &board->height_m);
   section.Read("pattern_offset_x_m", &board->pattern_offset_x_m);
   section.Read("pattern_offset_y_m", &board->pattern_offset_y_m);
-  section.Read("target_type", &board->pattern);  // as Kalibr calls it
   section.Read("pattern", &board->pattern);
   const CalibrationTarget* target = FindCalibrationTarget(board->pattern);
   if (target == nullptr) {

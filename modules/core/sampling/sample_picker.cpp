@@ -78,10 +78,12 @@ bool IsWhole(const CameraBoard& board) {
   });
 }
 
-// Of the corners that both saw; infinite if there is none.
+// Of the corners that both saw; infinite if there is none. Features of a table have no corners, and
+// do not move by them.
 double LargestCornerMotionPx(const CameraBoard& a, const CameraBoard& b) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   if (a.corners_px.size() != b.corners_px.size()) return kInfinite;
+  if (a.corners_px.empty()) return 0.0;
   double same_px = 0;
   double turned_px = 0;  // the detector took the other half-turn
   int num_common = 0;

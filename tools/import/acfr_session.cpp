@@ -154,6 +154,10 @@ ImportedFrames WriteFrames(Session session, const Rig& rig, const std::filesyste
 
 }  // namespace
 
+void RequireAcfrSession(const std::filesystem::path& folder, const AcfrImportOptions& options) {
+  const Session session(folder, options);
+}
+
 ImportedFrames ImportAcfrSession(const std::filesystem::path& folder,
                                  const Rig& rig,
                                  const AcfrImportOptions& options,

@@ -20,6 +20,9 @@ struct ImportedFrames {
   std::string pairing;  ///< By what clouds and images were paired, for people.
 };
 
+/// @throws std::runtime_error naming the folder of a session that is missing or empty.
+void RequireAcfrSession(const std::filesystem::path& folder, const AcfrImportOptions& options);
+
 /// Writes a session of cam_lidar_calibration (images/poseN.png, pcd/poseN_full.pcd) as a recording:
 /// LIDAR_POINTS, CAMERA_INFO and CAMERA_IMAGE on the rig's channels, with progress on the terminal.
 /// A cloud or an image that cannot be read is left out and named.

@@ -26,11 +26,12 @@ struct ImportArgs {
 
 void Import(const ImportArgs& args) {
   const Rig rig = LoadRig(args.rig);
+  const AcfrImportOptions options{args.rate_hz, args.pair == "order"};
+  RequireAcfrSession(args.session, options);  // before a folder is made
   args.out.Prepare();
   const ScratchFolder scratch(args.out.path);
   const std::filesystem::path log = scratch.path() / "import.lcm";
-  const ImportedFrames frames =
-      ImportAcfrSession(args.session, rig, {args.rate_hz, args.pair == "order"}, log);
+  const ImportedFrames frames = ImportAcfrSession(args.session, rig, options, log);
   std::error_code error;
   std::filesystem::rename(log, args.out.path, error);
   if (error)

@@ -81,6 +81,7 @@ TEST_F(Supervision, ASecondSessionOnTheNetworkIsRefused) {
 }
 
 TEST_F(Supervision, AFolderOfAnotherRigIsRefused) {
+  std::filesystem::create_directories(session_);
   folder_.Write("a session/rig.yaml", "rig: another\n");
   folder_.Write("a session/samples.lcm", "samples");
   const test::Outcome refused = Up({"--only", "voq_selector"});

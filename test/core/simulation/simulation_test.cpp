@@ -151,7 +151,7 @@ TEST(SimulationOptionsProblems, NamesTheRuleAndTheValue) {
   EXPECT_THAT(problems_after([](Options& o) { o.intensity_noise = -1; }),
               ElementsAre("intensity_noise must not be negative, is -1"));
   EXPECT_THAT(problems_after([](Options& o) { o.beam_divergence_rad = 0.1; }),
-              ElementsAre(HasSubstr("beam_divergence_deg must be within 0 and 2.86, is 5.7")));
+              ElementsAre("beam_divergence_deg must be within 0 and 2.86, is 5.72958"));
   EXPECT_THAT(problems_after([](Options& o) { o.dropout = 1; }),
               ElementsAre(HasSubstr("dropout must be")));
   EXPECT_THAT(problems_after([](Options& o) { o.image_noise = -2; }),

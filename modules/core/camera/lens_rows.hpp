@@ -3,11 +3,13 @@
 // One row a lens model: all that is particular to it. To add one: a row here, its name in LensRows
 // and in LensModel.
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <tuple>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "core/camera/camera_model.hpp"
 #include "core/camera/lens_distortion.hpp"

@@ -10,6 +10,10 @@ option(VOQCAL_WERROR "Treat warnings as errors" OFF)
 set(VOQCAL_SANITIZE "" CACHE STRING "Comma-separated sanitizers, e.g. address,undefined")
 if(VOQCAL_SANITIZE)
   add_compile_options(-fsanitize=${VOQCAL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  if(VOQCAL_SANITIZE MATCHES "address")
+    # Null pointers end under ASan too; these three are a quarter of the time to compile Eigen.
+    add_compile_options(-fno-sanitize=null,object-size,vptr)
+  endif()
   add_link_options(-fsanitize=${VOQCAL_SANITIZE})
 endif()
 
@@ -19,8 +23,8 @@ add_compile_options(-ffp-contract=off)
 # Everything that is installed, which is what tools/build makes; `all` has tests and benchmarks too.
 add_custom_target(programs)
 
-# What most files include, parsed once: a third of the time to build. The dev preset has it off: there a file
-# that forgets an include does not compile.
+# What most files include, parsed once: a third of the time to build. With it off, a file that forgets an
+# include does not compile.
 option(VOQCAL_PRECOMPILE "Precompile the headers that most files include" ON)
 if(VOQCAL_PRECOMPILE)
   add_library(voqcal_precompiled STATIC ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)

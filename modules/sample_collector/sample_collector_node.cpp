@@ -58,8 +58,12 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
 }
 
 std::string SampleCollectorNode::State() const {
-  return (is_finished_ ? "finished: " : "running: ") + std::to_string(samples().size()) +
-         " samples";
+  std::string state =
+      (is_finished_ ? "finished: " : "running: ") + std::to_string(samples().size()) + " samples";
+  if (!second_look_.empty()) {
+    state += ", " + std::to_string(second_look_.size()) + " stops without a board";
+  }
+  return state;
 }
 
 // Called when no message waits.
@@ -126,7 +130,10 @@ void SampleCollectorNode::LookAgain(bool is_resting) {
     const std::vector<KeptStop> found = second_look_.FindBoards(samples(), is_resting, &misses);
     for (const KeptStop& each : found) {
       const PickerDecision decision = picker_.TakeStop(each.stop);
-      if (!decision.accepted) continue;  // the lidar saw it by itself meanwhile
+      if (!decision.accepted) {  // "pose is not new": the lidar saw it by itself meanwhile
+        Count("second look: " + decision.reason);
+        continue;
+      }
       Count("found at a second look");
       const SensorFrame* image = each.image ? &*each.image : nullptr;
       Accept(*decision.accepted, {&each.sweeps.front(), image}, "at a second look");
@@ -192,7 +199,7 @@ void SampleCollectorNode::OnCommand(const command_t& message) {
 void SampleCollectorNode::Reset(std::int64_t utime) {
   session_.Reset();
   log_sha256_ = session_.Sha256();
-  picker_.SetKnown({});
+  picker_.ForgetPoses();
   CancelCapture();
   second_look_.Clear();
   next_look_ = kFirstLook;

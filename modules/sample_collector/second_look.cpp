@@ -71,7 +71,10 @@ std::vector<KeptStop> SecondLook::FindBoards(const std::vector<BoardSample>& sam
   std::vector<BoardSample> votes = samples;
   for (const KeptStop& kept : kept_) votes.push_back(VoteOf(kept.stop));
   const auto extrinsic = VoteForExtrinsic(votes, rig_.camera, rig_.T_camera_lidar_guess);
-  if (!extrinsic) return {};
+  if (!extrinsic) {
+    misses->insert(misses->end(), kept_.size(), "too few stops agree on where to look");
+    return {};
+  }
   std::vector<KeptStop> found;
   std::vector<KeptStop> left;
   for (KeptStop& kept : kept_) {

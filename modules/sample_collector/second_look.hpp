@@ -33,7 +33,8 @@ class SecondLook {
   /// @param is_newest_spared  the newest kept stop is not looked at.
   /// @return the kept stops in whose every sweep the board is where `samples` and the kept stops
   ///     together make the camera's board expect it; they are kept no longer. Those that were
-  ///     looked at in vain stay, and their reasons are in `misses`. None without a rough extrinsic.
+  ///     looked at in vain, or could not be for want of a rough extrinsic, stay, and their reasons
+  ///     are in `misses`.
   std::vector<KeptStop> FindBoards(const std::vector<BoardSample>& samples,
                                    bool is_newest_spared,
                                    std::vector<std::string>* misses);

@@ -181,10 +181,14 @@ std::vector<PickerDecision> SamplePicker::Flush() { return Judge(true); }
 
 void SamplePicker::SetKnown(const std::vector<BoardSample>& samples) {
   known_T_camera_board_.clear();
-  unsure_T_camera_board_.clear();
   for (const BoardSample& sample : samples) {
     known_T_camera_board_.push_back(TransformFromPose(sample.camera.pose));
   }
+}
+
+void SamplePicker::ForgetPoses() {
+  known_T_camera_board_.clear();
+  unsure_T_camera_board_.clear();
 }
 
 int SamplePicker::NearestCameraFrame(std::int64_t utime) const {
@@ -276,6 +280,7 @@ PickerDecision SamplePicker::TakeStop(const UnsureStop& stop) {
   for (std::size_t i = 0; i < stop.lidar.size(); ++i) {
     window.push_back({stop.lidar[i], stop.camera[i]});
   }
+  ForgetUnsure(stop.camera.front().board->pose);
   return JudgeWindow(window);
 }
 
@@ -363,6 +368,15 @@ std::optional<UnsureStop> SamplePicker::FollowedStop() {
     stop.camera.push_back(pair.camera);
   }
   return stop;
+}
+
+void SamplePicker::ForgetUnsure(const BoardPose& pose_camera) {
+  const Eigen::Isometry3d T_camera_board = TransformFromPose(pose_camera);
+  auto& unsure = unsure_T_camera_board_;
+  const auto is_that = [&](const Eigen::Isometry3d& T) {
+    return T.matrix() == T_camera_board.matrix();
+  };
+  unsure.erase(std::remove_if(unsure.begin(), unsure.end(), is_that), unsure.end());
 }
 
 bool SamplePicker::IsNew(const BoardPose& pose_camera) const {

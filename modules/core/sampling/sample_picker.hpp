@@ -83,10 +83,14 @@ class SamplePicker {
   void CancelCapture() { is_capture_requested_ = false; }
 
   /// A sample of a stop in which the lidar's board was found since, each frame's sighting with it.
+  /// The stop is unsure no more: if its sample is discarded, the board may come back there.
   PickerDecision TakeStop(const UnsureStop& stop);
 
-  /// The samples that the session has: new poses must differ from them.
+  /// The samples that the session has: new poses must differ from them. Unsure stops stay, as
+  /// whoever keeps them does: the same stop must not come twice.
   void SetKnown(const std::vector<BoardSample>& samples);
+  /// Forgets samples and unsure stops.
+  void ForgetPoses();
 
  private:
   struct Pair {
@@ -115,6 +119,7 @@ class SamplePicker {
   /// Why the window's boards are not at rest; empty if they are.
   std::string Motion(const Pair& pair) const;
   bool IsNew(const BoardPose& pose_camera) const;
+  void ForgetUnsure(const BoardPose& pose_camera);
 
   BoardSpec board_;
   SamplePickerOptions options_;

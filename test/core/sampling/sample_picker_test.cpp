@@ -402,6 +402,39 @@ TEST(SamplePicker, TakesAStopOnceItsBoardIsFound) {
   EXPECT_EQ(picker.TakeStop(stop).reason, "pose is not new");
 }
 
+// The board rests at 0.5 m again, unseen by the lidar.
+std::size_t NumStopsAgain(std::int64_t first_frame, SamplePicker* picker) {
+  std::vector<PickerDecision> decisions;
+  for (std::int64_t frame = first_frame; frame < first_frame + 3; ++frame) {
+    Append(picker->Add(Unsure(frame, 0.5)), &decisions);
+    Append(picker->Add(Camera(frame, 0.5)), &decisions);
+  }
+  Append(picker->Flush(), &decisions);
+  return StopsOf(decisions).size();
+}
+
+TEST(SamplePicker, TellsOfAStopOnceThoughASampleIsDiscarded) {
+  SamplePicker picker(Board(), {});
+  EXPECT_EQ(NumStopsAgain(0, &picker), 1u);
+  picker.SetKnown({});  // another place's sample was discarded: the stop is still kept
+  EXPECT_EQ(NumStopsAgain(3, &picker), 0u);
+  picker.ForgetPoses();
+  EXPECT_EQ(NumStopsAgain(6, &picker), 1u);
+}
+
+TEST(SamplePicker, TellsOfAStopAgainOnceItsOwnSampleIsDiscarded) {
+  SamplePicker picker(Board(), {});
+  UnsureStop stop;
+  for (int frame = 0; frame < 3; ++frame) {
+    stop.lidar.push_back(Lidar(frame, 0.5));
+    stop.camera.push_back(Camera(frame, 0.5));
+  }
+  EXPECT_EQ(NumStopsAgain(0, &picker), 1u);
+  ASSERT_TRUE(picker.TakeStop(stop).accepted);
+  picker.SetKnown({});
+  EXPECT_EQ(NumStopsAgain(3, &picker), 1u);
+}
+
 TEST(SamplePicker, TellsOfNoStopWhileTheCameraSeesTheBoardMove) {
   SamplePicker picker(Board(), {});
   std::vector<PickerDecision> decisions;

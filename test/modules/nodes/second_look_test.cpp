@@ -100,6 +100,7 @@ TEST_F(SecondLookTest, LooksNowhereWithoutAnExtrinsic) {
   for (int stop = 0; stop < 6; ++stop) ShowStop(stop, false);
   EXPECT_THAT(look_.FindBoards({}, /*is_newest_spared=*/false, &misses_), IsEmpty());
   EXPECT_EQ(look_.size(), 6u);
+  EXPECT_THAT(misses_, SizeIs(6));
 }
 
 TEST_F(SecondLookTest, TakesTheRigFilesGuess) {

@@ -23,10 +23,12 @@ struct Equations {
 Equations EquationsAt(const std::vector<const BoardSample*>& samples,
                       const CameraModel& camera,
                       const Eigen::Isometry3d& T_camera_lidar,
-                      const NominalNoise& nominal) {
+                      const NominalNoise& nominal,
+                      const SightingErrors& errors) {
   Equations equations;
   for (const BoardSample* sample : samples) {
-    const PoseDifference d = DifferenceOf(*sample, camera, T_camera_lidar, nominal);
+    PoseDifference d = DifferenceOf(*sample, camera, T_camera_lidar, nominal);
+    d.C += errors.CovarianceOf(sample->camera.pose);
     const Eigen::LLT<Matrix6d> cholesky(d.C);
     const Vector6d whitened = cholesky.solve(d.r);
     const double squared = d.r.dot(whitened);
@@ -55,13 +57,14 @@ bool IsRegular(const Matrix6d& information) {
 PoseFit FitPoses(const std::vector<const BoardSample*>& samples,
                  const CameraModel& camera,
                  const Eigen::Isometry3d& T_camera_lidar_start,
-                 const NominalNoise& nominal) {
+                 const NominalNoise& nominal,
+                 const SightingErrors& errors) {
   constexpr int kMaxIterations = 100;
   constexpr double kConverged = 1e-9;  // radians and metres
   PoseFit fit;
   fit.T_camera_lidar = T_camera_lidar_start;
   for (int i = 0; i < kMaxIterations && !fit.is_usable; ++i) {
-    const Equations equations = EquationsAt(samples, camera, fit.T_camera_lidar, nominal);
+    const Equations equations = EquationsAt(samples, camera, fit.T_camera_lidar, nominal, errors);
     if (!IsRegular(equations.information)) return fit;
     const Eigen::LLT<Matrix6d> cholesky(equations.information);
     const Vector6d step = cholesky.solve(equations.pull);

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+
+#include "core/board/board_sample.hpp"
+#include "core/geometry/rigid.hpp"
+
+namespace voqcal {
+
+/// What the thousand returns and hundred corners of one board share, and no detector can tell from
+/// inside one frame: 1 sigma of the difference between the two sensors, beyond their covariances.
+/// Ranges that are off by angle and shade, a bent board, an outline that is not cut square, the
+/// lens model's error at that place, the time between the two frames.
+struct SightingErrors {
+  double along_ray_m = 0.0;   ///< Of the centre, along the camera's ray.
+  double across_ray_m = 0.0;  ///< Of the centre, in each direction across it.
+  double tilt_rad = 0.0;      ///< Of the normal, in each direction.
+  double turn_rad = 0.0;      ///< About the normal.
+
+  /// Of [rotation_rad; translation_m] of one board, camera axes.
+  Matrix6d CovarianceOf(const BoardPose& pose_camera) const;
+};
+
+/// By order of magnitude what boards of real rigs show (`voqcal_figures field --verbose`): normals
+/// of a biased lidar are off by about a degree, ranges by one or two centimetres.
+constexpr SightingErrors kPriorErrors{0.02, 0.005, 0.02, 0.005};
+
+/// How one board's covariance grows with the square of each error, in the order of the struct.
+std::array<Matrix6d, 4> UnitCovariances(const BoardPose& pose_camera);
+
+}  // namespace voqcal

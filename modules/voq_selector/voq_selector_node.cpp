@@ -53,7 +53,8 @@ voq_sets_t VoqSelectorNode::Select(const samples_t& message) const {
   StampMadeFrom(message, &result);
   result.criterion = ToString(rig_.voq_selector.criterion);
   const CalibrationTask task = rig_.Task();
-  const ChosenSamples chosen = ChooseSamples(FromMessage(message), task.options.consistency);
+  const ChosenSamples chosen =
+      ChooseSamples(FromMessage(message), task.camera, task.options.consistency);
   AddFates(chosen, &result);
 
   const std::vector<std::int64_t> ids = IdsOf(chosen.Used());

@@ -9,13 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "core/units.hpp"
 #include "figures/field_set.hpp"
 #include "figures/figures.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / M_PI;
 
 struct FieldArgs {
   std::filesystem::path data;
@@ -68,6 +67,12 @@ void Print(const FieldSet& set, bool is_verbose) {
     PrintAxes("mm", 1e3, d.r.tail<3>(), d.sigma.tail<3>());
     std::puts("");
   }
+  std::printf(
+      "  beyond their covariances: %.1f mm along the ray, %.1f across, tilt %.2f deg, turn %.2f\n",
+      kMmPerM * set.errors.along_ray_m,
+      kMmPerM * set.errors.across_ray_m,
+      kDegPerRad * set.errors.tilt_rad,
+      kDegPerRad * set.errors.turn_rad);
   std::printf("  %s\n", set.counts.c_str());
 }
 

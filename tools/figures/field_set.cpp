@@ -6,8 +6,8 @@
 
 #include "calibrate/collect.hpp"
 #include "common/scratch_folder.hpp"
-#include "core/estimation/pose_fit.hpp"
 #include "core/estimation/set_extrinsic.hpp"
+#include "core/estimation/variance_components.hpp"
 #include "import/acfr_session.hpp"
 
 namespace voqcal {
@@ -25,26 +25,6 @@ std::size_t CountIn(const OfflineRun& run,
 }
 
 }  // namespace
-
-std::vector<SampleDifference> DifferencesFromOthers(const std::vector<const BoardSample*>& samples,
-                                                    const CameraModel& camera) {
-  std::vector<SampleDifference> differences;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    std::vector<const BoardSample*> others = samples;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    if (others.empty()) continue;
-    const PoseFit fit = FitPoses(others, camera, AnalyticExtrinsic(others), {});
-    if (!fit.is_usable) continue;
-    PoseDifference difference = DifferenceOf(*samples[i], camera, fit.T_camera_lidar, {});
-    difference.C += difference.J * fit.covariance * difference.J.transpose();
-    differences.push_back({samples[i]->id,
-                           NumMeasuredSides(samples[i]->lidar),
-                           difference.r,
-                           difference.C.diagonal().cwiseSqrt(),
-                           std::sqrt(difference.SquaredSigmas())});
-  }
-  return differences;
-}
 
 std::size_t FieldSet::NumWrong() const {
   return static_cast<std::size_t>(
@@ -74,6 +54,9 @@ FieldSet MeasureFieldSet(const std::filesystem::path& folder) {
   set.num_samples = all.size();
   set.num_consistent = consistent.size();
   set.differences = DifferencesFromOthers(consistent, rig.camera);
+  if (!consistent.empty()) {
+    set.errors = FitWithErrors(consistent, rig.camera, AnalyticExtrinsic(consistent)).errors;
+  }
   const auto& result = run->assessor().result();
   set.held_out_mm = result ? result->held_out.centre_mm.mean : std::nan("");
   set.problem = run->assessor().problem();

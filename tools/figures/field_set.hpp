@@ -1,33 +1,14 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "core/board/board_sample.hpp"
-#include "core/camera/camera_model.hpp"
-#include "core/geometry/rigid.hpp"
+#include "core/estimation/sighting_errors.hpp"
+#include "core/selection/differences_from_others.hpp"
 
 namespace voqcal {
-
-/// How far one sample is from where all the others put it.
-struct SampleDifference {
-  std::int64_t id = 0;
-  int num_measured_sides = 4;
-  Vector6d r = Vector6d::Zero();      ///< [rotation_rad; translation_m], camera axes.
-  Vector6d sigma = Vector6d::Zero();  ///< Of each, both sensors' and the extrinsic's together.
-  double sigmas = 0.0;                ///< Root of r' C^-1 r.
-
-  /// As rare as 3 sigma of one dimension: 0.27 %.
-  bool IsWrong() const { return sigmas * sigmas > 20.06; }
-};
-
-/// Each sample against the extrinsic that the others' poses give by their covariances (FitPoses).
-/// Left out where the others give none.
-std::vector<SampleDifference> DifferencesFromOthers(const std::vector<const BoardSample*>& samples,
-                                                    const CameraModel& camera);
 
 /// What became of one recording of other people.
 struct FieldSet {
@@ -38,6 +19,7 @@ struct FieldSet {
   std::size_t num_samples = 0;
   std::size_t num_consistent = 0;
   std::vector<SampleDifference> differences;  ///< Of the consistent ones.
+  SightingErrors errors;                      ///< Of theirs, beyond their covariances.
   double held_out_mm = 0.0;                   ///< Centre, mean; NaN if unknown.
   std::string problem;                        ///< Why there is no result; empty if there is one.
   std::string counts;                         ///< What each module counted.

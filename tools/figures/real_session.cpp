@@ -18,7 +18,7 @@ std::vector<SessionPose> LoadSession(const Rig& rig, const InputPaths& input) {
   run->Finish(/*is_collecting_only=*/true);
   std::vector<SessionPose> poses;
   std::map<std::int64_t, std::size_t> pose_of;
-  const ChosenSamples chosen = ChooseSamples(run->samples(), rig.consistency);
+  const ChosenSamples chosen = ChooseSamples(run->samples(), rig.camera, rig.consistency);
   for (const BoardSample* sample : chosen.Used()) {
     pose_of[sample->id] = poses.size();
     poses.push_back({*sample, std::nullopt, std::nullopt});

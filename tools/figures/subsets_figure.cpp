@@ -60,7 +60,7 @@ void PrintSubsets(const SubsetsArgs& args) {
   const ScratchFolder scratch(std::filesystem::temp_directory_path() / "voqcal-subsets");
   const auto run = CollectSamples(rig, args.input, scratch.path());
   run->Finish(/*is_collecting_only=*/true);
-  const ChosenSamples chosen = ChooseSamples(run->samples(), rig.consistency);
+  const ChosenSamples chosen = ChooseSamples(run->samples(), rig.camera, rig.consistency);
   const std::vector<const BoardSample*> samples = chosen.Used();
   double sum_mm = 0.0;
   double largest_mm = 0.0;

@@ -1,8 +1,11 @@
 #include "core/calibration/calibrate.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
+
+#include "core/selection/differences_from_others.hpp"
 
 namespace voqcal {
 namespace {
@@ -22,6 +25,7 @@ std::vector<const BoardSample*> ChosenSamples::Used() const {
 }
 
 ChosenSamples ChooseSamples(const std::vector<BoardSample>& samples,
+                            const CameraModel& camera,
                             const ConsistencyOptions& options) {
   const Consistency consistency = FindConsistent(samples, options);
   ChosenSamples chosen;
@@ -33,6 +37,12 @@ ChosenSamples ChooseSamples(const std::vector<BoardSample>& samples,
     TakeCandidate(each.candidate, &chosen.samples[static_cast<std::size_t>(each.sample)]);
     chosen.exchanged.push_back({IdOf(samples, each.sample), each.candidate, each.reason});
   }
+  for (const SampleDifference& each : FindOutlying(chosen.Used(), camera)) {
+    chosen.rejected.push_back({each.id, ReasonFor(each)});
+  }
+  std::sort(chosen.rejected.begin(), chosen.rejected.end(), [](const auto& a, const auto& b) {
+    return a.id < b.id;
+  });
   return chosen;
 }
 
@@ -72,7 +82,7 @@ CalibrationOutcome Calibrate(const std::vector<BoardSample>& samples,
                              const SceneViewsOf& scene_views,
                              const CalibrationTask& task) {
   CalibrationOutcome outcome;
-  outcome.chosen = ChooseSamples(samples, task.options.consistency);
+  outcome.chosen = ChooseSamples(samples, task.camera, task.options.consistency);
   outcome.sets = ChooseSets(outcome.chosen, task);
   outcome.problem = outcome.sets.problem;
   if (!outcome.problem.empty()) return outcome;

@@ -66,8 +66,10 @@ struct AveragedSets {
 using SceneViewsOf =
     std::function<std::vector<SceneView>(const std::vector<const BoardSample*>& samples)>;
 
-/// Step 1: the samples that agree with one another (FindConsistent).
+/// Step 1: the samples that agree with one another (FindConsistent), and that none of all the
+/// others together contradict (FindOutlying).
 ChosenSamples ChooseSamples(const std::vector<BoardSample>& samples,
+                            const CameraModel& camera,
                             const ConsistencyOptions& options);
 
 /// Step 2: the best sets among them (SelectSets).

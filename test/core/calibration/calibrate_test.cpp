@@ -41,7 +41,7 @@ TEST(Calibrate, FindsTheExtrinsicAndSaysWhatItIsMadeFrom) {
 TEST(Calibrate, IsItsSteps) {
   const auto samples = test::SynthesizeSamples(NoisyScene());
   const auto outcome = Calibrate(samples, {}, kTask);
-  const ChosenSamples chosen = ChooseSamples(samples, kTask.options.consistency);
+  const ChosenSamples chosen = ChooseSamples(samples, kTask.camera, kTask.options.consistency);
   const ChosenSets sets = ChooseSets(chosen, kTask);
   const AveragedSets averaged = AverageSets(chosen.Used(), sets.sets, kTask);
   const BestExtrinsic refined =
@@ -67,7 +67,7 @@ TEST(ChooseSets, ComparesWithThePublishedCriterion) {
   CalibrationTask task = kTask;
   task.options.selection.criterion = SelectionCriterion::kAllPoses;
   const ChosenSamples chosen =
-      ChooseSamples(test::SynthesizeSamples(NoisyScene()), task.options.consistency);
+      ChooseSamples(test::SynthesizeSamples(NoisyScene()), task.camera, task.options.consistency);
   const ChosenSets sets = ChooseSets(chosen, task);
   EXPECT_THAT(sets.sets, SizeIs(1));
   EXPECT_THAT(sets.lowest_voq, SizeIs(50));

@@ -136,13 +136,60 @@ test("a damaged chunk is left out and named, once the index led to it", async ()
   await assert.rejects(read([path("damaged.mcap")]), DamagedIndex);
   const { found, remarks } = await read([path("damaged.mcap")], true);
   assert.ok(found.length > NUM && found.length < 2 * NUM);
-  assert.match(remarks.join(), /the chunk at byte \d+ is damaged and left out/);
+  assert.match(remarks.join(), /1 chunk is damaged and left out, at byte \d+/);
+});
+
+test("a damaged record outside of chunks is left out and named; what is behind it is read", async () => {
+  await writeMcap(path("fast.mcap"), messages, { useChunks: false });
+  const whole = readFileSync(path("fast.mcap"));
+  const isMessage = (at) => whole[at] === 5 && whole.readUInt32LE(at + 5) === 0 && whole.readBigUInt64LE(at + 15) === START;
+  let at = 0;
+  while (!isMessage(at)) ++at;
+  const damages = {
+    "a length beyond the file": (bytes) => bytes.writeBigUInt64LE(1n << 40n, at + 1),
+    "no record's opcode": (bytes) => bytes.fill(0, at, at + 9),
+    "a message without all of its head": (bytes) => {
+      bytes.writeBigUInt64LE(10n, at + 1); // of which what is left is made a record that nobody knows
+      bytes[at + 19] = 0x90;
+      bytes.writeBigUInt64LE(whole.readBigUInt64LE(at + 1) - 19n, at + 20);
+    },
+  };
+  for (const [what, harm] of Object.entries(damages)) {
+    const bytes = Buffer.from(whole);
+    harm(bytes);
+    writeFileSync(path("harmed.mcap"), bytes);
+    const { found, remarks } = await read([path("harmed.mcap")]);
+    assert.deepEqual(found, expected.slice(1), what);
+    assert.match(remarks.join(), /harmed.mcap: 1 (stretch|record) is damaged and left out, at byte \d+/);
+  }
+});
+
+test("a damaged schema costs its topic alone", async () => {
+  const bytes = readFileSync(path("fast.mcap"));
+  const at = bytes.indexOf("sensor_msgs/msg/Image") - 4;
+  bytes.writeUInt32LE(0xffffffff, at); // the length of the name
+  writeFileSync(path("harmed.mcap"), bytes);
+  const recording = await openRecording([path("harmed.mcap")], folder);
+  assert.equal(recording.topics.get("/points").count, NUM);
+  assert.equal(recording.topics.get("/camera").type, "without a schema");
+  assert.match(recording.remarks.join(), /harmed.mcap: 1 record is damaged and left out/);
+  await recording.close();
+});
+
+test("a bag's damaged records are left out and named", async () => {
+  const bytes = readFileSync(path("b.bag.active"));
+  const at = bytes.indexOf("time=", bytes.length / 2);
+  bytes.write("tame=", at);
+  writeFileSync(path("harmed.bag"), bytes);
+  const { found, remarks } = await read([path("harmed.bag")]);
+  assert.equal(found.length, 2 * NUM - 1);
+  assert.match(remarks.join(), /harmed.bag: 1 record is damaged and left out, at byte \d+/);
 });
 
 test("a damaged recording is imported but for what is damaged", () => {
   const done = spawnSync(program, [path("damaged.mcap"), "--out", path("out.lcm")], { encoding: "utf8" });
   assert.equal(done.status, 0, done.stderr);
-  assert.match(done.stdout, /damaged.mcap: the chunk at byte \d+ is damaged[^]*LIDAR_POINTS: \d+ messages/);
+  assert.match(done.stdout, /damaged.mcap: 1 chunk is damaged[^]*LIDAR_POINTS: \d+ messages/);
 });
 
 test("a sqlite3 recording that is cut off: what can be read, or why not", { skip: !hasPython }, async () => {

@@ -2,6 +2,7 @@
 
 import { createRequire } from "node:module";
 import { loadDecompressHandlers } from "@mcap/support";
+import { Damage } from "./damage.mjs";
 import { FileWindow } from "./file_window.mjs";
 import { plainType, ros1Decoder } from "./message_decoders.mjs";
 
@@ -112,38 +113,54 @@ function cutRecordAt(file, at) {
 
 /** Every message in the order of the file, each chunk's by time. */
 function* scannedMessages(file, decompress, connections, remarks) {
+  const damage = new Damage();
   for (let at = BAG_MAGIC.length; at < file.numBytes; ) {
     const record = recordAt((from, length) => file.at(from, length), at);
     if (record === undefined) {
       remarks.push(`is cut off or damaged at byte ${at} of ${file.numBytes}: what is before it is read`);
       const cut = cutRecordAt(file, at);
-      if (cut?.op === OP.CHUNK) yield* inOrder(chunkMessages(cut, at, decompress, connections, []));
-      return;
+      if (cut?.op === OP.CHUNK) yield* inOrder(chunkMessages(cut, at, decompress, connections, new Damage()));
+      break;
     }
-    if (record.op === OP.CHUNK) yield* inOrder(chunkMessages(record, at, decompress, connections, remarks));
-    else yield* take(record, connections);
+    if (record.op === OP.CHUNK) yield* inOrder(chunkMessages(record, at, decompress, connections, damage));
+    else yield* take(record, at, connections, damage);
     at = record.end;
   }
+  remarks.push(...damage.words());
 }
 
 const inOrder = (messages) => [...messages].sort((a, b) => Number(a.logTimeNs - b.logTimeNs));
 
-function* take({ op, fields, data }, connections) {
-  if (op === OP.CONNECTION) {
-    const about = fieldsOf(data);
-    connections.add({
-      id: fields.conn.readUInt32LE(0),
-      topic: fields.topic.toString(),
-      type: about.type.toString(),
-      definition: about.message_definition.toString(),
-    });
+/** Connection or message of one record, which may be damaged. */
+function* take({ op, fields, data }, at, connections, damage) {
+  let message;
+  try {
+    if (op === OP.CONNECTION) connections.add(connectionOf(fields, data));
+    if (op === OP.MESSAGE) message = messageOf(fields, data);
+  } catch (error) {
+    damage.note("record", at, error.message);
+    return;
   }
-  if (op !== OP.MESSAGE || connections.topicOf(fields.conn.readUInt32LE(0)) === undefined) return;
-  const time = { sec: fields.time.readUInt32LE(0), nsec: fields.time.readUInt32LE(4) };
-  yield { id: fields.conn.readUInt32LE(0), logTimeNs: nanoseconds(time), data };
+  if (message && connections.topicOf(message.id) !== undefined) yield message;
 }
 
-function* chunkMessages({ fields, data }, offset, decompress, connections, remarks) {
+function connectionOf(fields, data) {
+  const about = fieldsOf(data);
+  return {
+    id: fields.conn.readUInt32LE(0),
+    topic: fields.topic.toString(),
+    type: about.type.toString(),
+    definition: about.message_definition.toString(),
+  };
+}
+
+function messageOf(fields, data) {
+  const time = { sec: fields.time.readUInt32LE(0), nsec: fields.time.readUInt32LE(4) };
+  return { id: fields.conn.readUInt32LE(0), logTimeNs: nanoseconds(time), data };
+}
+
+/** Of a chunk that is damaged: what is before the damage. */
+function* chunkMessages({ fields, data }, offset, decompress, connections, damage) {
   try {
     const compression = fields.compression.toString();
     const bytes = compression === "none" ? data : decompress[compression](data, fields.size.readUInt32LE(0));
@@ -153,11 +170,11 @@ function* chunkMessages({ fields, data }, offset, decompress, connections, remar
     for (let at = 0; at < records.length; ) {
       const record = recordAt(slice, at);
       if (record === undefined) throw new Error(`ends within a record, at its byte ${at}`);
-      yield* take(record, connections);
+      yield* take(record, offset, connections, damage);
       at = record.end;
     }
   } catch (error) {
-    remarks.push(`the chunk at byte ${offset} is damaged; what cannot be read of it is left out (${error.message})`);
+    damage.note("chunk", offset, error.message);
   }
 }
 

@@ -6,12 +6,15 @@ import { McapIndexedReader } from "@mcap/core";
 import { FileHandleReadable } from "@mcap/nodejs";
 import { loadDecompressHandlers } from "@mcap/support";
 import { UserError } from "../command.mjs";
+import { Damage } from "./damage.mjs";
 import { FileWindow } from "./file_window.mjs";
 import { plainType, ros1Decoder, ros2Decoder } from "./message_decoders.mjs";
 
 const { crc32 } = createRequire(import.meta.url)("@foxglove/crc");
 
 export const MCAP_MAGIC = Buffer.from("\x89MCAP0\r\n", "latin1");
+const MESSAGE_HEAD_BYTES = 22;
+const MIN_BYTES = 14; // of a schema, the shortest of what is looked for
 const OP = { SCHEMA: 3, CHANNEL: 4, MESSAGE: 5, CHUNK: 6, DATA_END: 15 };
 
 /** Opens by the index; undefined where there is none, or it lacks chunks, channels or their types. */
@@ -133,54 +136,116 @@ function rosDecoder({ topic, messageEncoding, schema }) {
 
 /** Every message in the order of the file, each chunk's by time. Without data if `isCounting`. */
 function* scannedMessages(file, decompress, channels, remarks, isCounting) {
+  const damage = new Damage();
   const inChunk = (bytes, at, isCut) =>
-    inOrder(chunkMessages(bytes, at, isCut, decompress, channels, remarks));
+    inOrder(chunkMessages(bytes, at, isCut, decompress, channels, damage));
   for (let at = MCAP_MAGIC.length; ; ) {
-    const head = file.at(at, 9);
-    const opcode = head?.readUInt8(0);
-    if (opcode === OP.DATA_END) return;
-    const length = head && Number(head.readBigUInt64LE(1));
-    if (head === undefined || opcode === 0 || at + 9 + length > file.numBytes) {
-      remarks.push(
-        at === file.numBytes
-          ? "was not closed by its recorder: all of it is read"
-          : `is cut off or damaged at byte ${at} of ${file.numBytes}: what is before it is read`,
-      );
-      if (opcode === OP.CHUNK) yield* inChunk(file.at(at + 9, file.numBytes - at - 9), at, true);
-      return;
+    const { opcode, begin, end } = recordAt(file, at) ?? {};
+    if (opcode === OP.DATA_END) break;
+    if (begin === undefined) {
+      const next = wholeRecordAfter(file, at, channels);
+      if (next === undefined) {
+        remarks.push(endsWithout(file, at));
+        if (file.at(at, 9)?.readUInt8(0) === OP.CHUNK) yield* inChunk(file.at(at + 9, file.numBytes - at - 9), at, true);
+        break;
+      }
+      damage.note("stretch", at, `${next - at} bytes are no record`);
+      at = next;
+      continue;
     }
-    const begin = at + 9;
-    at = begin + length;
-    if (opcode === OP.CHUNK) yield* inChunk(file.at(begin, length), begin, false);
-    else if (opcode === OP.MESSAGE && isCounting) yield messageOf(file.at(begin, Math.min(length, 22)));
-    else if (opcode <= OP.MESSAGE) yield* take(opcode, file.at(begin, length), channels);
+    if (opcode === OP.CHUNK) yield* inChunk(file.at(begin, end - begin), at, false);
+    else if (opcode <= OP.MESSAGE) {
+      const isLight = isCounting && opcode === OP.MESSAGE;
+      yield* take(opcode, file.at(begin, Math.min(end - begin, isLight ? MESSAGE_HEAD_BYTES : Infinity)), at, channels, damage);
+    }
+    at = end;
+  }
+  remarks.push(...damage.words());
+}
+
+/** What stands at `at`: a record whose end is in the file; undefined if none does. */
+function recordAt(file, at) {
+  const head = file.at(at, 9);
+  const opcode = head?.readUInt8(0);
+  const end = head && at + 9 + Number(head.readBigUInt64LE(1));
+  return opcode > 0 && end <= file.numBytes ? { opcode, begin: at + 9, end } : undefined;
+}
+
+/** Where, after damage, records go on: at one whose sizes add up and that another follows. */
+function wholeRecordAfter(file, damagedAt, channels) {
+  const isInChunk = file.at(damagedAt, 1)?.readUInt8(0) === OP.CHUNK; // other records are no records of the file there
+  for (let at = damagedAt + 1; at + 9 < file.numBytes; ++at) {
+    const opcode = file.at(at, 1).readUInt8(0);
+    if (opcode < OP.SCHEMA || opcode > OP.CHUNK || (isInChunk && opcode !== OP.CHUNK)) continue;
+    const { begin, end } = recordAt(file, at) ?? {};
+    if (begin === undefined || end - begin < MIN_BYTES) continue;
+    const head = file.at(begin, Math.min(end - begin, 400)); // names are shorter
+    if (isWhole(opcode, head, end - begin, channels) && isFollowed(file, end)) return at;
+  }
+  return undefined;
+}
+
+const isFollowed = (file, end) => end === file.numBytes || recordAt(file, end)?.opcode <= OP.DATA_END;
+
+/** Whether a record's sizes add up to `numBytes`. */
+function isWhole(opcode, head, numBytes, channels) {
+  try {
+    switch (opcode) {
+      case OP.SCHEMA: // id, name, encoding, data
+        return endOfTexts(head, 2, 3) === numBytes;
+      case OP.CHANNEL: // id, schema, topic, encoding, metadata
+        return endOfTexts(head, 4, 3) === numBytes;
+      case OP.MESSAGE:
+        return numBytes >= MESSAGE_HEAD_BYTES && channels.topicOf(head.readUInt16LE(0)) !== undefined;
+      default: {
+        const at = endOfTexts(head, 28, 1);
+        return at + 8 + Number(head.readBigUInt64LE(at)) === numBytes;
+      }
+    }
+  } catch {
+    return false;
   }
 }
 
+function endOfTexts(bytes, at, num) {
+  for (let i = 0; i < num; ++i) at += 4 + bytes.readUInt32LE(at);
+  return at;
+}
+
+const endsWithout = (file, at) =>
+  at === file.numBytes
+    ? "was not closed by its recorder: all of it is read"
+    : `is cut off or damaged at byte ${at} of ${file.numBytes}: what is before it is read`;
+
 const inOrder = (messages) => [...messages].sort((a, b) => Number(a.logTime - b.logTime));
 
-/** Schema id, channel or message of one record. */
-function* take(opcode, bytes, channels) {
-  if (opcode === OP.SCHEMA) channels.addSchema(schemaOf(bytes));
-  if (opcode === OP.CHANNEL) channels.add(channelOf(bytes), 0);
-  if (opcode !== OP.MESSAGE) return;
-  const message = messageOf(bytes);
-  if (channels.topicOf(message.channelId) !== undefined) yield message;
+/** Schema, channel or message of one record, which may be damaged. */
+function* take(opcode, bytes, at, channels, damage) {
+  let message;
+  try {
+    if (opcode === OP.SCHEMA) channels.addSchema(schemaOf(bytes));
+    if (opcode === OP.CHANNEL) channels.add(channelOf(bytes), 0);
+    if (opcode === OP.MESSAGE) message = messageOf(bytes);
+  } catch (error) {
+    damage.note("record", at, error.message);
+    return;
+  }
+  if (message && channels.topicOf(message.channelId) !== undefined) yield message;
 }
 
 /** Of a chunk that is cut off: what is before the cut, where it is not compressed. */
-function* chunkMessages(bytes, offset, isCut, decompress, channels, remarks) {
+function* chunkMessages(bytes, offset, isCut, decompress, channels, damage) {
   let records;
   try {
     records = chunkRecords(bytes, decompress, isCut);
   } catch (error) {
-    if (!isCut) remarks.push(`the chunk at byte ${offset} is damaged and left out (${error.message})`);
+    if (!isCut) damage.note("chunk", offset, error.message);
     return;
   }
   for (let at = 0; at + 9 <= records.length; ) {
     const length = Number(records.readBigUInt64LE(at + 1));
     if (at + 9 + length > records.length) return;
-    yield* take(records[at], records.subarray(at + 9, at + 9 + length), channels);
+    yield* take(records[at], records.subarray(at + 9, at + 9 + length), offset, channels, damage);
     at += 9 + length;
   }
 }
@@ -203,6 +268,7 @@ function chunkRecords(bytes, decompress, isCut) {
 /** A text of MCAP, its length before it, and where it ends. */
 function text(bytes, at) {
   const end = at + 4 + bytes.readUInt32LE(at);
+  if (end > bytes.length) throw new Error("it names more bytes than it has");
   return { value: bytes.toString("utf8", at + 4, end), end };
 }
 
@@ -222,5 +288,5 @@ function channelOf(bytes) {
 const messageOf = (bytes) => ({
   channelId: bytes.readUInt16LE(0),
   logTime: bytes.readBigUInt64LE(6),
-  data: bytes.subarray(22),
+  data: bytes.subarray(MESSAGE_HEAD_BYTES),
 });

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { cameraToLcm, isRectifiedTopic } from "../lib/sensor_msgs/cameras.mjs";
-import { asCloud, cloudToLcm, timeKind } from "../lib/sensor_msgs/clouds.mjs";
+import { asCloud, cloudToLcm, positionDoubt, timeKind } from "../lib/sensor_msgs/clouds.mjs";
 import { bitsUsed, imageToLcm } from "../lib/sensor_msgs/images.mjs";
 import { Tally } from "../lib/tally.mjs";
 
@@ -145,6 +145,28 @@ test("rows whose step or number was left out; clouds that are cut off", () => {
   assert.equal(toLcm({ ...message, height: 0 }).height, 1);
   assert.throws(() => toLcm({ ...message, data: message.data.subarray(5) }), /11 x 1 points of 14 bytes has 149 bytes/);
   assert.throws(() => toLcm({ ...message, fields: message.fields.slice(1) }), /no field x: y, z, ring/);
+});
+
+test("fields that cannot be read are the cloud's fault, not the recording's", () => {
+  const message = cloud("time", "f4", (i) => 0.01 * i);
+  const withField = (i, change) => ({ ...message, fields: message.fields.map((field, k) => (k === i ? { ...field, ...change } : field)) });
+  assert.throws(() => toLcm(withField(0, { datatype: 11 })), /field x has the unknown datatype 11/);
+  assert.throws(() => toLcm(withField(3, { offset: 13 })), /field time at offset 13 does not fit a point of 16 bytes/);
+});
+
+test("points in millimetres, in a map's frame, or none: said", () => {
+  const moved = (shift, scale) => {
+    const message = cloud("ring", "u2", (i) => i);
+    for (let at = 0; at < message.data.length; at += message.point_step) {
+      for (let axis = 0; axis < 3; ++axis) message.data.writeFloatLE(scale * message.data.readFloatLE(at + 4 * axis) + shift[axis], at + 4 * axis);
+    }
+    return asCloud(message, "sensor_msgs/PointCloud2");
+  };
+  assert.equal(positionDoubt([moved([0, 0, 0], 1)]), undefined);
+  assert.equal(positionDoubt([]), undefined);
+  assert.match(positionDoubt([moved([0, 0, 0], 1000)]), /more than 5099 m away: are they in millimetres\?/);
+  assert.match(positionDoubt([moved([450_000, 5_400_000, 100], 1)]), /around \(45000\d, 5400000, 101\) m: in a map's frame\?/);
+  assert.match(positionDoubt([moved([0, 0, 0], NaN)]), /no point of the first 1 clouds has a position/);
 });
 
 test("Livox' own messages", () => {

@@ -41,7 +41,17 @@ export function asCloud(message, type) {
     if (fieldOf(message.fields, axis)) continue;
     throw new UserError(`the cloud has no field ${axis}: ${namesOf(message.fields)}`);
   }
+  for (const field of ["x", "y", "z", "time"].map((name) => fieldOf(message.fields, name)).filter(Boolean)) {
+    requireReadable(field, point_step);
+  }
   return { ...message, height, row_step };
+}
+
+function requireReadable({ name, offset, datatype }, point_step) {
+  if (!READERS[datatype - 1]) throw new UserError(`the cloud's field ${name} has the unknown datatype ${datatype}`);
+  if (offset + NUM_BYTES[datatype - 1] > point_step) {
+    throw new UserError(`the cloud's field ${name} at offset ${offset} does not fit a point of ${point_step} bytes`);
+  }
 }
 
 const namesOf = (fields) => fields.map(({ name }) => name).join(", ");
@@ -99,11 +109,42 @@ function timeRange(cloud) {
   return range.most > range.least ? range : undefined;
 }
 
+const MAX_RANGE_M = 300; // of half of a lidar's points: none sees so far
+
+/** What is odd about where the points of these clouds are; undefined if nothing is. */
+export function positionDoubt(clouds) {
+  const points = clouds.flatMap(positionsOf);
+  if (points.length === 0) {
+    return clouds.length > 0 ? `no point of the first ${clouds.length} clouds has a position: all are NaN or 0` : undefined;
+  }
+  const centre = [0, 1, 2].map((axis) => median(points.map((point) => point[axis])));
+  const rangeM = median(points.map((point) => Math.hypot(...point)));
+  if (!(rangeM > MAX_RANGE_M)) return undefined;
+  const spreadM = median(points.map((point) => Math.hypot(...point.map((value, axis) => value - centre[axis]))));
+  const isElsewhere = spreadM < 0.05 * Math.hypot(...centre);
+  return isElsewhere
+    ? `the points lie around (${centre.map((value) => value.toFixed(0)).join(", ")}) m: in a map's frame? The lidar's own is needed`
+    : `half of the points are more than ${rangeM.toFixed(0)} m away: are they in millimetres? Metres are needed`;
+}
+
+/** Some of the points that have a position. */
+function positionsOf(cloud) {
+  const axes = ["x", "y", "z"].map((name) => access(cloud, fieldOf(cloud.fields, name)));
+  const every = Math.max(1, Math.floor((cloud.width * cloud.height) / 500));
+  const points = [];
+  let i = 0;
+  forEachPoint(cloud, (at) => {
+    if (i++ % every !== 0) return;
+    const point = axes.map(({ read }) => read(at));
+    if (point.every(Number.isFinite) && point.some((value) => value !== 0)) points.push(point);
+  });
+  return points;
+}
+
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
 /** Reads and writes one field at the offset of a point. */
-function access({ data, is_bigendian }, { name, offset, datatype }) {
-  if (!READERS[datatype - 1]) throw new UserError(`the cloud's field ${name} has the unknown datatype ${datatype}`);
+function access({ data, is_bigendian }, { offset, datatype }) {
   const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
   const method = `get${READERS[datatype - 1]}`;
   const isLittle = !is_bigendian;

@@ -56,7 +56,16 @@ std::int64_t TimeUs(const std::uint8_t* time, bool has_utc_seconds) {
 
 class Decoder {
  public:
-  explicit Decoder(Model model) : model_(std::move(model)) { PutLens(&model_.beams); }
+  Decoder(Model model, LidarUnit unit)
+      : model_(std::move(model)),
+        unit_(std::move(unit)),
+        has_own_angles_(!unit_.calibration.empty()) {
+    if (has_own_angles_) {
+      const auto num_lasers = static_cast<std::size_t>(model_.num_lasers);
+      model_.beams = ReadBeamCsv(unit_.calibration, num_lasers);
+    }
+    CompleteBeams(&model_.beams);
+  }
 
   Expected<LidarPacket, PacketFault> Decode(PacketBytes bytes) {
     if (bytes.size != kPacketBytes) return PacketFault::kWrongSize;
@@ -99,7 +108,8 @@ class Decoder {
     return Azimuth(data, 0) != Azimuth(data, 2);
   }
 
-  // A sensor that was never calibrated has all bits set, or none.
+  // Angles of the user's own file stay. A sensor that was never calibrated has all bits set, or
+  // none.
   void LearnState(const std::uint8_t* data) {
     constexpr std::uint8_t kDual = 0;
     has_two_returns_ = data[kReturnModeAt] == kDual;
@@ -119,7 +129,7 @@ class Decoder {
     }
     if (is_blank || has_own_angles_) return;
     NumberRings(&beams);
-    PutLens(&beams);
+    CompleteBeams(&beams);
     model_.beams = std::move(beams);
     has_own_angles_ = true;
   }
@@ -129,7 +139,8 @@ class Decoder {
     return 0.01 * (bytes[0] == 0 ? angle : -angle) * kRadPerDeg;
   }
 
-  void PutLens(BeamTable* beams) const {
+  void CompleteBeams(BeamTable* beams) const {
+    TakeElevations(unit_, beams);
     for (Beam& beam : *beams) beam.ahead_of_axis_m = model_.lens_m;
   }
 
@@ -185,16 +196,13 @@ class Decoder {
   }
 
   Model model_;
+  LidarUnit unit_;
+  bool has_own_angles_;
   bool has_two_returns_ = false;
-  bool has_own_angles_ = false;
 };
 
 PacketDecoder MakeDecoder(Model model, const LidarUnit& unit) {
-  if (!unit.calibration.empty()) {
-    model.beams = ReadBeamCsv(unit.calibration, static_cast<std::size_t>(model.num_lasers));
-  }
-  TakeElevations(unit, &model.beams);
-  return [decoder = Decoder(std::move(model))](PacketBytes bytes) mutable {
+  return [decoder = Decoder(std::move(model), unit)](PacketBytes bytes) mutable {
     return decoder.Decode(bytes);
   };
 }

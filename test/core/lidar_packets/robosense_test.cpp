@@ -135,6 +135,29 @@ TEST(DecodeRobosenseBpearl, TakesTheAngleFile) {
   EXPECT_THROW(MakeRobosenseBpearl({"1,2\n3,4\n", {}, 0.0, {}}), std::invalid_argument);
 }
 
+// The height of an echo of laser 31 at 5 m, after a state packet (which has the laser at 5.5
+// degrees).
+double HeightAfterStatePacket(const LidarUnit& unit) {
+  const PacketDecoder decode = MakeRobosense32(unit);
+  const auto state = StatePacket();
+  EXPECT_FALSE(decode({state.data(), state.size()}));
+  DataPacket packet(0, 40, false);
+  packet.SetEcho(0, 31, 1000, 10);
+  const auto decoded = decode(packet.Bytes());
+  return decoded ? decoded->returns.at(0).point.position_m.z() : std::nan("");
+}
+
+TEST(DecodeRobosense32, KeepsTheUsersAnglesWhateverTheSensorSays) {
+  std::string file;
+  for (int laser = 0; laser < 32; ++laser) file += std::to_string(-20 + laser) + ",0\n";
+  EXPECT_NEAR(HeightAfterStatePacket({}), 5.0 * std::sin(5.5 * kDeg), 1e-5);
+  EXPECT_NEAR(HeightAfterStatePacket({file, {}, 0.0, {}}), 5.0 * std::sin(11.0 * kDeg), 1e-5);
+  std::vector<double> elevations_rad;
+  for (int ring = 0; ring < 32; ++ring) elevations_rad.push_back((-30 + ring) * kDeg);
+  EXPECT_NEAR(
+      HeightAfterStatePacket({{}, elevations_rad, 0.0, {}}), 5.0 * std::sin(1.0 * kDeg), 1e-5);
+}
+
 TEST(DecodeRobosenseHelios, CountsSecondsAndFinerRanges) {
   DataPacket packet(0, 40, false);
   WriteBig(&packet.bytes, 3, 0x5A, 1);

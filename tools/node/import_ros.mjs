@@ -1,20 +1,22 @@
 // import_ros: a recording of ROS (1 or 2) to an LCM log.
 
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname } from "node:path";
+import { dirname, join } from "node:path";
 import { judgeClocks } from "./lib/clocks.mjs";
 import { UserError, runCommand } from "./lib/command.mjs";
+import { cameraTarget, cloudTarget, imageTarget, packetTarget } from "./lib/import_targets.mjs";
 import { LogWriter } from "./lib/lcm_log.mjs";
-import { voqcalTypes } from "./lib/lcm_types.mjs";
 import { prepareOutput } from "./lib/output_file.mjs";
+import { DecoderFailed } from "./lib/packet_decoder.mjs";
 import { Progress } from "./lib/progress.mjs";
 import { DamagedIndex } from "./lib/recordings/merged.mjs";
 import { openRecording } from "./lib/recordings/open.mjs";
 import { cameraSection, cameraToLcm, isRectifiedTopic } from "./lib/sensor_msgs/cameras.mjs";
-import { asCloud, cloudToLcm, timeKind } from "./lib/sensor_msgs/clouds.mjs";
-import { bitsUsed, imageToLcm } from "./lib/sensor_msgs/images.mjs";
-import { CAMERA_INFOS, CLOUDS, IMAGES, stampOf } from "./lib/sensor_msgs/messages.mjs";
-import { Tally } from "./lib/tally.mjs";
+import { positionDoubt, timeKind } from "./lib/sensor_msgs/clouds.mjs";
+import { bitsUsed } from "./lib/sensor_msgs/images.mjs";
+import { CAMERA_INFOS, CLOUDS, IMAGES } from "./lib/sensor_msgs/messages.mjs";
+import { PACKETS, isBesidePackets } from "./lib/sensor_msgs/packets.mjs";
 
 const command = {
   name: "import_ros",
@@ -24,6 +26,9 @@ const command = {
     "lidar-topic": { type: "string" },
     "image-topic": { type: "string" },
     "camera-info-topic": { type: "string" },
+    rig: { type: "string" },
+    "lidar-model": { type: "string" },
+    "lidar-calibration": { type: "string" },
     times: { type: "string", default: "auto" },
     out: { type: "string" },
     force: { type: "boolean", default: false },
@@ -37,9 +42,12 @@ const command = {
                                index, split (several files, or their folder), compressed by zstd
   --out LOG                    the LCM log to write; folders are made if missing
   --force                      overwrite the log if it is there
-  --lidar-topic NAME           of type PointCloud2 or Livox' CustomMsg; may be left out if there is one only
+  --lidar-topic NAME           of type PointCloud2, Livox' CustomMsg or a lidar's packets; may be left out if there is one only
   --image-topic NAME           of type Image or CompressedImage; the same
   --camera-info-topic NAME     of type CameraInfo: goes into the log too
+  --lidar-model NAME           whose packets they are (decode_lidar --help lists them), where they do not tell
+  --lidar-calibration FILE     the vendor's file on this very unit, for packets; Ouster's is taken from the recording
+  --rig RIG                    the rig file, whose lidar_driver says the same and how to decode
   --times auto|stamps|log      a message's time: its stamp, or when it was recorded; auto (the default) takes stamps
                                unless they are of different clocks, and says so
   --lidar-channel, --image-channel, --camera-info-channel NAME
@@ -54,7 +62,9 @@ const MAX_SAMPLED_BYTES = 1 << 28;
 /** The topic that was asked for, or the only one of these types. */
 function chooseTopic(recording, flag, wanted, types, preferred) {
   const { topics } = recording;
-  const isRight = (name) => types.includes(topics.get(name)?.type) && !name.endsWith("/compressedDepth");
+  const isAside = (name) => PACKETS.includes(topics.get(name).type) && isBesidePackets(name);
+  const isRight = (name) =>
+    types.includes(topics.get(name)?.type) && !name.endsWith("/compressedDepth") && !isAside(name);
   for (const name of [wanted, wanted && `/${wanted}`]) if (isRight(name)) return name;
   const candidates = [...topics.keys()].filter(isRight);
   if (wanted === undefined && candidates.length === 1) return candidates[0];
@@ -105,25 +115,60 @@ async function* inFixedOrder(messages, names) {
   yield* sorted();
 }
 
-/** What to do with each topic. `toLcm` makes a message of what `decode` gave. */
-function conversions(recording, flags) {
+/** What becomes of each topic that is taken. */
+async function targetsOf(recording, flags) {
   const plan = new Map();
-  const add = (kind, types, type, steps) => {
-    const flag = `${kind}-topic`;
-    const topic = chooseTopic(recording, flag, flags[flag], types);
-    const rosType = recording.topics.get(topic).type;
-    const channel = flags[`${kind}-channel`];
-    plan.set(topic, { kind, channel, type, rosType, ...steps(topic), tally: new Tally(`topic ${topic}`) });
-    return topic;
-  };
-  add("lidar", CLOUDS, "pointcloud2_t", () => ({ prepare: asCloud, toLcm: cloudToLcm }));
-  const imageTopic = add("image", IMAGES, "image_t", () => ({ prepare: (message) => message, toLcm: imageToLcm }));
+  const choose = (kind, types) => chooseTopic(recording, `${kind}-topic`, flags[`${kind}-topic`], types);
+  const typeOf = (topic) => recording.topics.get(topic).type;
+  const lidarTopic = choose("lidar", lidarTypes(recording, flags));
+  const imageTopic = choose("image", IMAGES);
+  if (PACKETS.includes(typeOf(lidarTopic))) await addPackets(plan, recording, lidarTopic, flags);
+  else plan.set(lidarTopic, cloudTarget(lidarTopic, typeOf(lidarTopic), flags["lidar-channel"]));
+  plan.set(imageTopic, imageTarget(imageTopic, typeOf(imageTopic), flags["image-channel"]));
   if (flags["camera-info-topic"] !== undefined) {
-    const isRectified = isRectifiedTopic(imageTopic);
-    const toLcm = (message, utime, seq) => cameraToLcm(message, utime, seq, isRectified);
-    add("camera-info", CAMERA_INFOS, "camera_info_t", () => ({ prepare: (message) => message, toLcm }));
+    const topic = choose("camera-info", CAMERA_INFOS);
+    plan.set(topic, cameraTarget(topic, typeOf(topic), flags["camera-info-channel"], imageTopic));
   }
   return plan;
+}
+
+/** Clouds; packets where there are none, or they are asked for. */
+function lidarTypes(recording, flags) {
+  if (flags["lidar-topic"] !== undefined) return [...CLOUDS, ...PACKETS];
+  const there = [...recording.topics.values()].map(({ type }) => type);
+  const hasPackets = there.some((type) => PACKETS.includes(type));
+  return there.some((type) => CLOUDS.includes(type)) || !hasPackets ? CLOUDS : PACKETS;
+}
+
+/** The packets' topic, and those of the sensor's state, which RoboSense's decoders learn from. */
+async function addPackets(plan, recording, topic, flags) {
+  const metadata = await metadataFile(recording);
+  const args = { rig: flags.rig, model: flags["lidar-model"], calibration: flags["lidar-calibration"], metadata };
+  const given = Object.entries(args).filter(([, value]) => value !== undefined);
+  const target = packetTarget(
+    topic,
+    recording.topics.get(topic).type,
+    flags["lidar-channel"],
+    given.flatMap(([name, value]) => [`--${name}`, value]),
+  );
+  const isState = ([name, { type }]) => PACKETS.includes(type) && /difop/i.test(name);
+  for (const [name] of [...recording.topics].filter(isState)) plan.set(name, target);
+  plan.set(topic, target);
+}
+
+/** Ouster's driver records its sensor's metadata beside the packets, as text. */
+async function metadataFile(recording) {
+  const isMetadata = ([name, { type }]) => type === "std_msgs/String" && /metadata$/.test(name);
+  const topics = [...recording.topics].filter(isMetadata).map(([name]) => name);
+  if (topics.length === 0) return undefined;
+  for await (const message of recording.messages(topics)) {
+    const folder = mkdtempSync(join(tmpdir(), "voqcal-metadata-"));
+    process.once("exit", () => rmSync(folder, { recursive: true, force: true }));
+    const path = join(folder, "metadata.json");
+    writeFileSync(path, message.decode().data);
+    return path;
+  }
+  return undefined;
 }
 
 /** The first messages of clouds and images: {message, stampNs, logTimeNs} by kind. Broken ones are passed over. */
@@ -132,14 +177,14 @@ async function firstMessages(recording, plan) {
   const names = [...plan].filter(([, { kind }]) => kind in first).map(([name]) => name);
   let numBytes = 0;
   for await (const { topic, logTimeNs, data, decode } of recording.messages(names)) {
-    const { kind, prepare, rosType } = plan.get(topic);
+    const { kind, prepare, stampNs } = plan.get(topic);
     numBytes += data.length;
     const isEnough = Object.values(first).every((messages) => messages.length >= NUM_SAMPLED);
     if (isEnough || numBytes > MAX_SAMPLED_BYTES) break;
     if (first[kind].length >= NUM_SAMPLED) continue;
     try {
-      const message = prepare(decode(), rosType);
-      first[kind].push({ message, logTimeNs, stampNs: stampOf(message) });
+      const message = prepare(decode());
+      first[kind].push({ message, logTimeNs, stampNs: stampNs(message, logTimeNs) });
     } catch {
       // Counted when it is imported.
     }
@@ -153,25 +198,35 @@ async function settle(recording, plan, flags, words) {
   const clocks = judgeClocks(first.lidar, first.image);
   const useLogTimes = flags.times === "log" || (flags.times === "auto" && clocks.useLogTimes);
   if (flags.times === "auto" && clocks.words) words.push(clocks.words);
-  const times = timeKind(first.lidar.map(({ message }) => message));
+  const hasPackets = [...plan.values()].some((target) => target.hasPackets);
+  const clouds = hasPackets ? [] : first.lidar.map(({ message }) => message);
+  const times = timeKind(clouds);
   if (times) words.push(times.words);
+  const doubt = positionDoubt(clouds);
+  if (doubt) words.push(doubt);
   const bits = bitsUsed(first.image.map(({ message }) => message));
   if (bits) words.push(`images have ${bits} bits of 16: the upper 8 of these are taken`);
   return { useLogTimes, lidar: times, image: bits };
 }
 
-async function writeLog(recording, plan, settled, out, progress) {
-  const types = voqcalTypes();
+async function writeLog(recording, plan, settled, out, progress, words) {
   const names = [...plan.keys()];
   const total = names.reduce((sum, name) => sum + recording.topics.get(name).count, 0);
   const log = new LogWriter(out);
   try {
     let num = 0;
+    let lastTimeNs = 0n;
     for await (const event of inFixedOrder(recording.messages(names), names)) {
-      writeMessage(event, plan.get(event.topic), settled, types, log);
+      await writeMessage(event, plan.get(event.topic), settled, log);
+      lastTimeNs = event.logTimeNs;
       progress.add(event.data.length, ++num / total);
     }
-    for (const { tally } of plan.values()) tally.requireSome();
+    for (const target of new Set(plan.values())) {
+      target.tally.requireSome();
+      const left = await target.finish();
+      for (const bytes of left.encoded) log.write(lastTimeNs / 1000n, target.channel, bytes);
+      if (left.words) words.push(`${target.channel}: ${left.words}`);
+    }
   } catch (error) {
     log.abandon();
     throw error;
@@ -180,19 +235,17 @@ async function writeLog(recording, plan, settled, out, progress) {
 }
 
 /** One message; a broken one is counted and left out. */
-function writeMessage({ logTimeNs, decode }, target, settled, types, log) {
-  let bytes;
+async function writeMessage({ logTimeNs, decode }, target, settled, log) {
+  let encoded;
   try {
-    const message = target.prepare(decode(), target.rosType);
-    const utime = (settled.useLogTimes ? logTimeNs : stampOf(message)) / 1000n; // LCM knows no finer
-    const converted = target.toLcm(message, utime, target.tally.numTaken, settled[target.kind]);
-    bytes = types.encode(target.type, converted);
+    encoded = await target.encode(target.prepare(decode()), logTimeNs, settled);
   } catch (error) {
+    if (error instanceof DecoderFailed) throw error;
     target.tally.leaveOut(error.message);
     return;
   }
   ++target.tally.numTaken;
-  log.write(logTimeNs / 1000n, target.channel, bytes);
+  for (const bytes of encoded) log.write(logTimeNs / 1000n, target.channel, bytes);
 }
 
 async function importRecording(recording, flags) {
@@ -200,17 +253,23 @@ async function importRecording(recording, flags) {
   if (!["auto", "stamps", "log"].includes(flags.times)) {
     throw new UserError(`--times must be auto, stamps or log, is ${flags.times}`);
   }
-  const plan = conversions(recording, flags);
+  const plan = await targetsOf(recording, flags);
   prepareOutput(flags.out, flags.force);
   const words = [];
-  const settled = await settle(recording, plan, flags, words);
   const progress = new Progress("importing");
-  await writeLog(recording, plan, settled, flags.out, progress);
+  try {
+    const settled = await settle(recording, plan, flags, words);
+    await writeLog(recording, plan, settled, flags.out, progress, words);
+  } finally {
+    for (const target of plan.values()) target.close?.();
+  }
   progress.end();
   const say = (line) => process.stdout.write(`${line}\n`);
   for (const line of [...recording.remarks, ...words]) say(line);
-  for (const [topic, { channel, tally }] of plan) {
-    say(`${channel}: ${tally.numTaken} messages of ${topic}`);
+  for (const target of new Set(plan.values())) {
+    const { channel, tally } = target;
+    const topics = [...plan.keys()].filter((topic) => plan.get(topic) === target);
+    say(`${channel}: ${tally.numTaken} messages of ${topics.join(" and ")}`);
     if (tally.words()) say(`${channel}: ${tally.words()}`);
   }
   say(`${progress.rate()}\nwritten\n  ${flags.out}`);

@@ -8,15 +8,17 @@ import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
 import { McapWriter } from "@mcap/core";
 import { FileHandleWritable } from "@mcap/nodejs";
+import { PACKET_DEFINITIONS } from "../lib/sensor_msgs/packets.mjs";
 
 const require = createRequire(import.meta.url);
 const { ros1, ros2humble } = require("@foxglove/rosmsg-msgs-common");
-const { md5, stringify } = require("@foxglove/rosmsg");
+const { md5, parse, stringify } = require("@foxglove/rosmsg");
 const { MessageWriter: Ros1Writer } = require("@foxglove/rosmsg-serialization");
 const { MessageWriter: Ros2Writer } = require("@foxglove/rosmsg2-serialization");
 
 /** A type and all that it is made of, the type itself first. */
 function definitionsOf(types, name) {
+  if (PACKET_DEFINITIONS[name]) return parse(PACKET_DEFINITIONS[name], { ros2: true });
   const found = new Map();
   const add = (type) => {
     if (found.has(type)) return;

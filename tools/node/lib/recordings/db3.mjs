@@ -6,6 +6,7 @@ import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
 import { loadDecompressHandlers } from "@mcap/support";
 import { UserError } from "../command.mjs";
+import { exactReader } from "../exact_reader.mjs";
 import { plainType, ros2Decoder } from "./message_decoders.mjs";
 import { ZSTD_MAGIC, zstdContentBytes } from "./zstd.mjs";
 
@@ -84,24 +85,4 @@ async function* rows(path, ids) {
   } finally {
     child.kill();
   }
-}
-
-/** A function that reads so many bytes of a stream; undefined where it ends before them. */
-function exactReader(stream) {
-  const pieces = stream[Symbol.asyncIterator]();
-  let piece = Buffer.alloc(0);
-  return async (length) => {
-    const bytes = Buffer.allocUnsafe(length);
-    for (let done = 0; done < length; ) {
-      if (piece.length === 0) {
-        const next = await pieces.next();
-        if (next.done) return undefined;
-        piece = next.value;
-      }
-      const num = piece.copy(bytes, done);
-      piece = piece.subarray(num);
-      done += num;
-    }
-    return bytes;
-  };
 }

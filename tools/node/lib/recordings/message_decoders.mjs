@@ -3,6 +3,7 @@
 import { createRequire } from "node:module";
 import { UserError } from "../command.mjs";
 import { LIVOX_DEFINITIONS } from "../sensor_msgs/livox.mjs";
+import { PACKET_DEFINITIONS } from "../sensor_msgs/packets.mjs";
 
 // These packages are CommonJS.
 const require = createRequire(import.meta.url);
@@ -27,8 +28,8 @@ export function ros2Decoder(type, definition) {
 
 /** A type and all that it is made of, as the readers want it. */
 function knownDefinition(type) {
-  const livox = LIVOX_DEFINITIONS[plainType(type)];
-  if (livox) return parse(livox, { ros2: true });
+  const driver = LIVOX_DEFINITIONS[plainType(type)] ?? PACKET_DEFINITIONS[plainType(type)];
+  if (driver) return parse(driver, { ros2: true });
   const found = new Map();
   const add = (name) => {
     const definition = ros2humble[plainType(name)] ?? ros2humble[plainType(name).replace("/", "/msg/")];

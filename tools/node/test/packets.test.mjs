@@ -1,0 +1,259 @@
+// Recordings of packets give what decode_lidar makes of the same packets' capture. The programs are those that are
+// built; captures are written here, and, where they are at hand, of real sensors.
+
+import assert from "node:assert/strict";
+import { execFileSync, spawnSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { readLog } from "../lib/lcm_log.mjs";
+import { voqcalTypes } from "../lib/lcm_types.mjs";
+import { programPath } from "../lib/packet_decoder.mjs";
+import { openRecording } from "../lib/recordings/open.mjs";
+import { writeDb3, writeMcap } from "./recording_writers.mjs";
+
+const folder = mkdtempSync(join(tmpdir(), "voqcal-packets-"));
+after(() => rmSync(folder, { recursive: true }));
+const path = (name) => join(folder, name);
+const importRos = fileURLToPath(new URL("../../import_ros", import.meta.url));
+const realData = fileURLToPath(new URL("../../../../shared/data/packets/", import.meta.url));
+const types = voqcalTypes();
+
+function isBuilt() {
+  try {
+    return Boolean(programPath("decode_packets") && programPath("decode_lidar"));
+  } catch {
+    return false;
+  }
+}
+const options = { skip: !isBuilt() && "the programs are not built" };
+
+// ---- Captures: {timeUs, bytes} of each packet ------------------------------------------------------
+
+const START_US = 1_600_000_000_000_000n;
+
+/** Two and a half turns of a VLP-16 whose walls are 5 m away, but for the first blocks of a turn. */
+function vlp16Packets() {
+  return Array.from({ length: 190 }, (_, i) => {
+    const bytes = Buffer.alloc(1206);
+    for (let block = 0; block < 12; ++block) {
+      const azimuth = (40 * (12 * i + block)) % 36000;
+      bytes.writeUInt16LE(0xeeff, 100 * block);
+      bytes.writeUInt16LE(azimuth, 100 * block + 2);
+      for (let place = 0; place < 32; ++place) {
+        bytes.writeUInt16LE(azimuth < 400 ? 0 : 2500 + place, 100 * block + 4 + 3 * place);
+        bytes[100 * block + 6 + 3 * place] = place;
+      }
+    }
+    bytes.writeUInt32LE(1327 * i, 1200);
+    bytes[1204] = 0x37;
+    bytes[1205] = 0x22;
+    return { timeUs: START_US + BigInt(1327 * i), bytes };
+  });
+}
+
+function readPcap(file) {
+  const all = readFileSync(file);
+  const packets = [];
+  for (let at = 24; at < all.length; ) {
+    const numBytes = all.readUInt32LE(at + 8);
+    const timeUs = BigInt(all.readUInt32LE(at)) * 1_000_000n + BigInt(all.readUInt32LE(at + 4));
+    packets.push({ timeUs, bytes: all.subarray(at + 16 + 42, at + 16 + numBytes) });
+    at += 16 + numBytes;
+  }
+  return packets;
+}
+
+function writePcap(file, packets) {
+  const frames = packets.flatMap(({ timeUs, bytes }) => {
+    const head = Buffer.alloc(16 + 42);
+    head.writeUInt32LE(Number(timeUs / 1_000_000n), 0);
+    head.writeUInt32LE(Number(timeUs % 1_000_000n), 4);
+    head.writeUInt32LE(42 + bytes.length, 8);
+    head.writeUInt32LE(42 + bytes.length, 12);
+    head.writeUInt16BE(0x0800, 16 + 12);
+    head.writeUInt8(0x45, 16 + 14);
+    head.writeUInt16BE(28 + bytes.length, 16 + 16);
+    head.writeUInt8(17, 16 + 23);
+    head.writeUInt16BE(2368, 16 + 36);
+    head.writeUInt16BE(8 + bytes.length, 16 + 38);
+    return [head, bytes];
+  });
+  const fileHead = Buffer.from("d4c3b2a1" + "0200" + "0400" + "00000000".repeat(2) + "ffff0000" + "01000000", "hex");
+  writeFileSync(file, Buffer.concat([fileHead, ...frames]));
+}
+
+// ---- Recordings of them ------------------------------------------------------------------------------
+
+const stampOf = (timeUs) => ({ sec: Number(timeUs / 1_000_000n), nsec: 1000 * Number(timeUs % 1_000_000n) });
+const headerAt = (timeUs) => ({ seq: 0, stamp: stampOf(timeUs), frame_id: "lidar" });
+const padded = (bytes, length) => Buffer.concat([bytes, Buffer.alloc(length - bytes.length)]);
+
+/** By type, what a driver makes of the packets of 0.1 s. */
+const SCANS = {
+  "velodyne_msgs/VelodyneScan": ({ timeUs, bytes }) => ({ stamp: stampOf(timeUs), data: bytes }),
+  "pandar_msgs/PandarScan": ({ timeUs, bytes }) => ({ stamp: stampOf(timeUs), data: padded(bytes, 1500), size: bytes.length }),
+  "nebula_msgs/NebulaPackets": ({ timeUs, bytes }) => ({ stamp: stampOf(timeUs), data: bytes }),
+  "hesai_ros_driver/UdpFrame": ({ bytes }) => ({ data: bytes, size: bytes.length }),
+};
+
+function scansOf(packets, type) {
+  const scans = [];
+  for (let i = 0; i < packets.length; i += 70) {
+    const part = packets.slice(i, i + 70);
+    const logTimeNs = 1000n * part.at(-1).timeUs + 5_000_000n;
+    const message = { header: headerAt(part[0].timeUs), packets: part.map(SCANS[type]) };
+    scans.push({ topic: "/packets", type, logTimeNs, message });
+  }
+  return scans;
+}
+
+const singles = (packets) =>
+  packets.map(({ timeUs, bytes }) => ({
+    topic: "/packets",
+    type: "ouster_sensor_msgs/PacketMsg",
+    logTimeNs: 1000n * timeUs,
+    message: { buf: bytes },
+  }));
+
+const image = (timeNs) => ({
+  topic: "/camera",
+  type: "sensor_msgs/Image",
+  logTimeNs: timeNs,
+  message: { header: headerAt(timeNs / 1000n), width: 2, height: 1, encoding: "mono8", is_bigendian: 0, step: 2, data: Buffer.alloc(2) },
+});
+const withImages = (scans) => scans.flatMap((scan) => [scan, image(scan.logTimeNs)]);
+
+// ---- What comes of them --------------------------------------------------------------------------------
+
+const POINT_BYTES = 22;
+
+/** {utime, points} of each sweep; a point's bytes: x y z intensity ring time. */
+function imported(file, ...flags) {
+  const out = execFileSync(importRos, [file, "--force", "--out", path("out.lcm"), ...flags], { encoding: "utf8" });
+  return { sweeps: sweepsOf(path("out.lcm")), out };
+}
+
+function sweepsOf(log) {
+  const clouds = [...readLog(log)].filter(({ channel }) => channel === "LIDAR_POINTS");
+  return clouds.map(({ bytes }) => {
+    const { utime, width, point_step: step, fields, data } = types.decode("pointcloud2_t", bytes);
+    const parts = ["x", "y", "z", "intensity", "ring", "time"].map((name) => fields.find((field) => field.name === name));
+    const points = Buffer.alloc(POINT_BYTES * width);
+    for (let i = 0, to = 0; i < width; ++i) {
+      for (const { offset, datatype } of parts) to += data.copy(points, to, i * step + offset, i * step + offset + (datatype === 4 ? 2 : 4));
+    }
+    return { utime, points };
+  });
+}
+
+/** The same of decode_lidar, told to do as a rig does that says nothing. */
+function decoded(capture, model, splitAzimuth = "180", ...flags) {
+  const out = path("sweeps");
+  const asRigs = ["--returns", "strongest", "--split-azimuth", splitAzimuth, ...flags];
+  execFileSync(programPath("decode_lidar"), [capture, "--model", model, "--out", out, ...asRigs]);
+  return readdirSync(out).sort().map((name) => {
+    const bytes = readFileSync(join(out, name));
+    const begin = bytes.indexOf("DATA binary\n") + 12;
+    const numPoints = (bytes.length - begin) / (POINT_BYTES + 1); // the number of the return is last
+    const points = Buffer.alloc(POINT_BYTES * numPoints);
+    for (let i = 0; i < numPoints; ++i) {
+      const at = begin + i * (POINT_BYTES + 1);
+      bytes.copy(points, i * POINT_BYTES, at, at + POINT_BYTES);
+    }
+    return { utime: BigInt(/# utime (\d+)/.exec(bytes.toString("latin1", 0, 100))[1]), points };
+  });
+}
+
+const pointsOf = (sweeps) => sweeps.map(({ points }) => points);
+
+test("VelodyneScan in MCAP and sqlite3, which does not define it: as decode_lidar", options, async () => {
+  const packets = vlp16Packets();
+  writePcap(path("a.pcap"), packets);
+  const expected = decoded(path("a.pcap"), "velodyne_vlp16");
+  assert.ok(expected.length >= 3);
+  const scans = withImages(scansOf(packets, "velodyne_msgs/VelodyneScan"));
+  await writeMcap(path("a.mcap"), scans);
+  const { sweeps, out } = imported(path("a.mcap"));
+  assert.deepEqual(sweeps, expected);
+  assert.match(out, /LIDAR_POINTS: \d sweeps of packets of a Velodyne VLP-16[^:]*: 190 packets/);
+  writeDb3(path("a.db3"), scans);
+  assert.deepEqual(imported(path("a.db3")).sweeps, expected);
+});
+
+test("packets one by one and without times: the log's", options, async () => {
+  const packets = vlp16Packets();
+  await writeMcap(path("b.mcap"), withImages(singles(packets)));
+  assert.deepEqual(imported(path("b.mcap")).sweeps, decoded(path("a.pcap"), "velodyne_vlp16"));
+});
+
+test("stamps of another clock: log times, said; forbidden if asked", options, async () => {
+  const late = vlp16Packets().map(({ timeUs, bytes }) => ({ timeUs: timeUs - START_US + 7_000_000n, bytes }));
+  const scans = scansOf(late, "velodyne_msgs/VelodyneScan").map((scan) => ({ ...scan, logTimeNs: scan.logTimeNs + 1000n * START_US }));
+  await writeMcap(path("c.mcap"), withImages(scans));
+  const { sweeps, out } = imported(path("c.mcap"));
+  assert.match(out, /the clocks of lidar and camera differ by 50.7 years; log times agree within 0 ms: using them/);
+  assert.ok(sweeps[0].utime > START_US && sweeps[0].utime < START_US + 10_000_000n);
+  assert.ok(imported(path("c.mcap"), "--times", "stamps").sweeps[0].utime < 20_000_000n);
+});
+
+test("sweeps end where the rig file says", options, async () => {
+  const rigs = new URL("../../../config/rigs/simulated_vlp16.yaml", import.meta.url);
+  const text = readFileSync(rigs, "utf8");
+  const asSensor = text.replace("source: simulator ", "source: velodyne_vlp16 ").replace(/split_azimuth_deg: \d+/, "split_azimuth_deg: 90");
+  writeFileSync(path("rig.yaml"), asSensor);
+  await writeMcap(path("e.mcap"), withImages(scansOf(vlp16Packets(), "velodyne_msgs/VelodyneScan")));
+  const { sweeps } = imported(path("e.mcap"), "--rig", path("rig.yaml"));
+  assert.deepEqual(sweeps, decoded(path("a.pcap"), "velodyne_vlp16", "90"));
+});
+
+test("packets that cannot be decoded: one line, and no log", options, async () => {
+  const run = (...flags) => spawnSync(importRos, [path("d.mcap"), "--out", path("d.lcm"), ...flags], { encoding: "utf8" });
+  const refuses = (done, words) => {
+    assert.equal(done.status, 1);
+    assert.match(done.stderr, words);
+    assert.ok(!existsSync(path("d.lcm")));
+  };
+  await writeMcap(path("d.mcap"), withImages(scansOf(vlp16Packets(), "velodyne_msgs/VelodyneScan")));
+  refuses(run("--lidar-model", "hesai_40p"), /^import_ros: [^\n]*no Pandar40P packet among 190 of 1206 bytes: another sensor\?[^\n]*\n$/);
+  refuses(run("--lidar-model", "vlp17"), /--lidar-model must be one of velodyne_vlp16/);
+  const alien = vlp16Packets().map((packet) => ({ ...packet, bytes: Buffer.alloc(1206) }));
+  await writeMcap(path("d.mcap"), withImages(scansOf(alien, "velodyne_msgs/VelodyneScan")));
+  refuses(run(), /whose packets these are is not recognised \(190, the last of 1206 bytes\): --lidar-model names the lidar/);
+});
+
+const REAL = {
+  velodyne_vlp16: "velodyne_msgs/VelodyneScan",
+  velodyne_vlp32: "nebula_msgs/NebulaPackets",
+  hesai_40p: "pandar_msgs/PandarScan",
+  hesai_xt16: "hesai_ros_driver/UdpFrame",
+};
+for (const [model, type] of Object.entries(REAL)) {
+  const capture = join(realData, "nebula", `${model}.pcap`);
+  test(`a real ${model} as ${type}: as decode_lidar`, { skip: options.skip || !existsSync(capture) }, async () => {
+    await writeMcap(path("real.mcap"), withImages(scansOf(readPcap(capture), type)));
+    const { sweeps } = imported(path("real.mcap"));
+    const expected = decoded(capture, model);
+    assert.ok(expected.length > 0);
+    assert.deepEqual(pointsOf(sweeps), pointsOf(expected));
+  });
+}
+
+const ousterBag = join(realData, "ouster/bags/512x10_raw.bag");
+test("a real Ouster's bag with its metadata: as decode_lidar", { skip: options.skip || !existsSync(ousterBag) }, async () => {
+  const recording = await openRecording([ousterBag], folder);
+  const packets = [];
+  for await (const { topic, logTimeNs, decode } of recording.messages(["/os_node0/lidar_packets", "/os_node0/metadata"])) {
+    if (topic.endsWith("metadata")) writeFileSync(path("metadata.json"), decode().data);
+    else packets.push({ timeUs: logTimeNs / 1000n, bytes: Buffer.from(decode().buf) });
+  }
+  await recording.close();
+  writePcap(path("ouster.pcap"), packets);
+  await writeMcap(path("images.mcap"), [image(1000n * packets.at(-1).timeUs)]);
+  execFileSync(importRos, [ousterBag, path("images.mcap"), "--force", "--out", path("out.lcm")]);
+  const expected = decoded(path("ouster.pcap"), "ouster", "180", "--calibration", path("metadata.json"));
+  assert.ok(expected.length > 0);
+  assert.deepEqual(sweepsOf(path("out.lcm")), expected);
+});

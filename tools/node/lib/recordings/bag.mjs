@@ -97,8 +97,8 @@ class Connections {
 
   message(id, logTimeNs, data) {
     const connection = this.#connections.get(id);
-    connection.decode ??= ros1Decoder(connection.definition);
-    return { topic: connection.topic, logTimeNs, data, decode: () => connection.decode(data) };
+    const decode = () => (connection.decode ??= ros1Decoder(connection.definition))(data);
+    return { topic: connection.topic, logTimeNs, data, decode };
   }
 }
 

@@ -5,9 +5,25 @@
 #include "common/run_program.hpp"
 
 namespace voqcal {
+namespace {
+
+const char* NameOf(RecordingTimes times) {
+  switch (times) {
+    case RecordingTimes::kAuto:
+      return "auto";
+    case RecordingTimes::kStamps:
+      return "stamps";
+    case RecordingTimes::kLog:
+      return "log";
+  }
+  throw std::logic_error("NameOf: unknown times");
+}
+
+}  // namespace
 
 std::filesystem::path ImportBag(const Rig& rig,
                                 const BagInput& bag,
+                                RecordingTimes times,
                                 const std::filesystem::path& folder) {
   const std::filesystem::path log = folder / "recording.lcm";
   // By the shell, for stdout is calibrate's own (--json).
@@ -22,7 +38,7 @@ std::filesystem::path ImportBag(const Rig& rig,
   add("--image-channel", rig.channels.camera_image);
   add("--lidar-topic", bag.lidar_topic);
   add("--image-topic", bag.image_topic);
-  add("--times", bag.times);
+  add("--times", NameOf(times));
   args.push_back("--");
   args.insert(args.end(), bag.paths.begin(), bag.paths.end());
   if (RunProgram(args).empty()) return log;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/recording_clocks.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {
@@ -11,15 +12,15 @@ namespace voqcal {
 /// A recording of ROS, as tools/import_ros takes it.
 struct BagInput {
   std::vector<std::string> paths;
-  std::string lidar_topic;     ///< Empty: the only one.
-  std::string image_topic;     ///< Empty: the only one.
-  std::string times = "auto";  ///< auto, stamps or log.
+  std::string lidar_topic;  ///< Empty: the only one.
+  std::string image_topic;  ///< Empty: the only one.
 };
 
 /// Makes an LCM log of it on the rig's channels, in `folder`. What import_ros says goes to stderr.
 /// @throws std::runtime_error naming the recording; import_ros has told the cause.
 std::filesystem::path ImportBag(const Rig& rig,
                                 const BagInput& bag,
+                                RecordingTimes times,
                                 const std::filesystem::path& folder);
 
 }  // namespace voqcal

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -85,7 +86,7 @@ void RunCalibrate(const CalibrateArgs& args) {
                          kSamplesLogName);  // a live session's, which must not be replaced
   const ScratchFolder scratch(args.out);
   InputPaths input = args.input;
-  if (!args.bag.paths.empty()) input.log = ImportBag(rig, args.bag, scratch.path());
+  if (!args.bag.paths.empty()) input.log = ImportBag(rig, args.bag, input.times, scratch.path());
   const auto run = CollectSamples(rig, input, scratch.path());
   run->Finish(/*is_collecting_only=*/false);
   const std::string wrong_sign = WrongOffsetSign(run->samples(), rig.board);
@@ -106,6 +107,7 @@ void RunCalibrate(const CalibrateArgs& args) {
 }  // namespace voqcal
 
 int main(int argc, char** argv) {
+  using voqcal::RecordingTimes;
   CLI::App app("Calibrates a camera against a lidar from a recording of both.", "calibrate");
   voqcal::CalibrateArgs args;
   app.add_option("--rig", args.rig, "The rig file (YAML): board, camera, channels, options")
@@ -124,13 +126,14 @@ int main(int argc, char** argv) {
       ->needs(bag);
   app.add_option("--image-topic", args.bag.image_topic, "Of --bag, unless there is only one")
       ->needs(bag);
-  app.add_option(
-         "--times",
-         args.bag.times,
-         "Of --bag: a message's time is its stamp, or when it was recorded (log); auto takes "
-         "stamps unless they are of different clocks")
-      ->check(CLI::IsMember({"auto", "stamps", "log"}))
-      ->needs(bag);
+  const std::map<std::string, RecordingTimes> times = {{"auto", RecordingTimes::kAuto},
+                                                       {"stamps", RecordingTimes::kStamps},
+                                                       {"log", RecordingTimes::kLog}};
+  app.add_option("--times",
+                 args.input.times,
+                 "Of a recording: a message's time is its stamp, or when it was recorded (log); "
+                 "auto takes stamps unless they are of different clocks")
+      ->transform(CLI::CheckedTransformer(times).description(""));
   app.add_option(
          "--out",
          args.out,

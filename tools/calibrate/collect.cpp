@@ -79,13 +79,15 @@ std::unique_ptr<OfflineRun> RunFromTable(const Rig& rig,
 }
 
 std::unique_ptr<OfflineRun> RunFromRecording(const Rig& rig,
-                                             const std::filesystem::path& log,
+                                             const InputPaths& input,
                                              const std::filesystem::path& session_folder) {
+  const std::filesystem::path& log = *input.log;
   auto run = std::make_unique<OfflineRun>(rig, session_folder);
   Progress progress("reading " + log.filename().string());
-  run->FeedLog(log, [&progress](double share, std::size_t num_samples) {
+  const auto on_progress = [&progress](double share, std::size_t num_samples) {
     progress.Show(share, std::to_string(num_samples) + " samples");
-  });
+  };
+  run->FeedLog(log, on_progress, input.times);
   return run;
 }
 
@@ -96,7 +98,7 @@ std::unique_ptr<OfflineRun> CollectSamples(const Rig& rig,
                                            const std::filesystem::path& session_folder) {
   if (input.poses) return RunFromTable(rig, *input.poses, session_folder);
   if (IsSamplesLog(rig, *input.log)) return RunFromSamplesLog(rig, *input.log, session_folder);
-  return RunFromRecording(rig, *input.log, session_folder);
+  return RunFromRecording(rig, input, session_folder);
 }
 
 std::string CountsOf(const OfflineRun& run) {

@@ -13,6 +13,7 @@ namespace voqcal {
 struct InputPaths {
   std::optional<std::filesystem::path> log;
   std::optional<std::filesystem::path> poses;
+  RecordingTimes times = RecordingTimes::kAuto;  ///< Of a recording.
 
   const std::filesystem::path& Given() const { return log ? *log : *poses; }
 };

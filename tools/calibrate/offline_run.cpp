@@ -35,14 +35,18 @@ OfflineRun::OfflineRun(const Rig& rig, const std::filesystem::path& session_fold
       channels_.calib_event, Queue::kEvery, [this](const event_t& m) { events_.push_back(m); });
 }
 
-void OfflineRun::FeedLog(const std::filesystem::path& log, const OnProgress& on_progress) {
+void OfflineRun::FeedLog(const std::filesystem::path& log,
+                         const OnProgress& on_progress,
+                         RecordingTimes times) {
+  const bool use_log_times = UsesLogTimes(log, times);
   const std::set<std::string> inputs = {
       channels_.lidar_points, channels_.camera_image, channels_.calib_command};
   std::set<std::string> seen;
   LogReader reader(log);
-  while (const std::optional<LogEvent> event = NextBeforeCut(&reader)) {
+  while (std::optional<LogEvent> event = NextBeforeCut(&reader)) {
     seen.insert(event->channel);
     if (inputs.count(event->channel) == 0) continue;
+    if (use_log_times && event->channel != channels_.calib_command) TakeLogTime(&*event);
     try {
       bus_.PublishBytes(event->channel, event->bytes.data(), event->bytes.size());
       HandleAll();
@@ -61,6 +65,13 @@ void OfflineRun::FeedLog(const std::filesystem::path& log, const OnProgress& on_
     throw std::runtime_error(log.string() + ": has no channel " + needed + "; it has " +
                              (there.empty() ? "no events" : there));
   }
+}
+
+bool OfflineRun::UsesLogTimes(const std::filesystem::path& log, RecordingTimes times) const {
+  if (times != RecordingTimes::kAuto) return times == RecordingTimes::kLog;
+  const ClockVerdict verdict = JudgeClocksOf(log, channels_);
+  if (!verdict.words.empty()) spdlog::warn("{}: {}", log.string(), verdict.words);
+  return verdict.use_log_times;
 }
 
 // A power failure or a full disk ends a recording within an event: what came before it is good.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "assessor/assessor_node.hpp"
+#include "calibrate/recording_clocks.hpp"
 #include "camera_board_detector/camera_board_detector_node.hpp"
 #include "extrinsic_estimator/extrinsic_estimator_node.hpp"
 #include "extrinsic_refiner/extrinsic_refiner_node.hpp"
@@ -34,9 +35,12 @@ class OfflineRun {
   OfflineRun(const Rig& rig, const std::filesystem::path& session_folder);
 
   /// Feeds the sensor messages of a recording (sweeps, images, commands), event by event.
-  /// An event that is cut off by the file's end is left out, with a warning.
+  /// An event that is cut off by the file's end is left out, with a warning. What `times` comes to
+  /// is said if it is not the stamps.
   /// @throws std::runtime_error naming the log, byte or event, and the cause.
-  void FeedLog(const std::filesystem::path& log, const OnProgress& on_progress);
+  void FeedLog(const std::filesystem::path& log,
+               const OnProgress& on_progress,
+               RecordingTimes times = RecordingTimes::kAuto);
 
   /// Feeds samples that another program extracted.
   void FeedSamples(const std::vector<BoardSample>& samples);
@@ -61,6 +65,7 @@ class OfflineRun {
   std::vector<const Module*> modules() const;
 
  private:
+  bool UsesLogTimes(const std::filesystem::path& log, RecordingTimes times) const;
   std::optional<LogEvent> NextBeforeCut(LogReader* reader);
   void HandleAll();
 

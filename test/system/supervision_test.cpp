@@ -127,6 +127,20 @@ TEST_F(Supervision, AKilledModuleIsStartedAgain) {
   EXPECT_NE(PidOf("voq_selector"), before);
 }
 
+TEST_F(Supervision, DownEndsWhatAKilledSupervisorLeft) {
+  std::filesystem::create_directories(session_);
+  folder_.Write("a session/report.html", "of an earlier result");
+  ASSERT_EQ(Up({"--only", "voq_selector", "--record"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(session_ + "/report.html"));
+  kill(std::stoi(ReadWholeFile(session_ + "/supervisord.pid")), SIGKILL);
+  const test::Outcome up = Up({"--only", "voq_selector"});
+  EXPECT_EQ(up.status, 1);
+  EXPECT_THAT(up.err, HasSubstr("its supervisor was killed"));
+  const test::Outcome down = Down();
+  EXPECT_EQ(down.status, 0) << down.err;
+  EXPECT_THAT(down.out, HasSubstr("ending the 2 programs"));
+}
+
 TEST_F(Supervision, UpSaysWhyAModuleDoesNotStart) {
   session_ = folder_.path() / "session";
   std::filesystem::create_directories(session_ + "/samples.lcm");  // a folder in the way

@@ -16,6 +16,7 @@ install(PROGRAMS tools/up tools/status tools/down tools/run_rig tools/record too
                  tools/import_ros tools/export_mcap tools/voqcal
   DESTINATION tools)
 install(DIRECTORY tools/common/ DESTINATION tools/common FILES_MATCHING PATTERN *.sh)
+install(FILES tools/common/stop_session.py DESTINATION tools/common)
 # Node.js fetches its libraries there: npm ci.
 install(DIRECTORY tools/node DESTINATION tools USE_SOURCE_PERMISSIONS
   PATTERN node_modules EXCLUDE PATTERN test EXCLUDE)

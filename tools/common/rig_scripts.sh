@@ -32,6 +32,19 @@ is_running() {  # SESSION: its supervisor answers; one that was killed leaves so
   [ -S "$1/supervisor.sock" ] && supervisorctl -c "$1/supervisor.conf" pid >/dev/null 2>&1
 }
 
+# Processes of a session whose supervisor was killed: they go on by themselves. Their numbers, those that the
+# supervisor wrote down, if they are still of this session.
+orphans_of() {  # SESSION
+  local pid arg
+  [ -f "$1/supervisord.log" ] && ! is_running "$1" || return 0
+  for pid in $(sed -n "s/.* spawned: '.*' with pid \([0-9]*\)$/\1/p" "$1/supervisord.log"); do
+    [ -r "/proc/$pid/cmdline" ] || continue
+    while IFS= read -r -d '' arg; do
+      if [[ "$arg" = "$1" || "$arg" = "$1"/raw*.lcm ]]; then echo "$pid"; break; fi
+    done <"/proc/$pid/cmdline" || true
+  done
+}
+
 # The session's folder, absolute: DIR, or logs/NAME-OF-THE-RIG below the working directory, or, without
 # either, the one session that runs below logs/.
 session_folder() {  # DIR RIG

@@ -34,7 +34,7 @@ class Module {
   /// heals.
   virtual void Republish() {}
 
-  /// One line for MODULE_STATUS: "running", "waiting for ...", "failed: ...".
+  /// In MODULE_STATUS: "running", "waiting ...", "trouble: what; remedy", "failed: ...".
   virtual std::string State() const { return "running"; }
 
   /// Results and misses by reason, for MODULE_STATUS and the closing line.

@@ -25,6 +25,18 @@ constexpr std::size_t kFirstLook = 5;
 /// A reason in CALIB_EVENT.
 constexpr char kByCommand[] = "by command";
 
+/// Why a frame was judged without one of the other sensor, but for BetweenFrames.
+bool IsOutOfOrder(const std::string& reason) {
+  return reason == "lidar frame out of order" || reason == "camera frame out of order";
+}
+
+/// Sensors of two rates leave frames without a partner, which is no miss; empty for other reasons.
+std::string BetweenFrames(const std::string& reason) {
+  if (reason == "no camera frame at that time") return "sweeps between two images";
+  if (reason == "no lidar frame at that time") return "images between two sweeps";
+  return {};
+}
+
 }  // namespace
 
 SampleCollectorNode::SampleCollectorNode(const Rig& rig,
@@ -41,9 +53,14 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
       log_sha256_(session_.Sha256()) {
   picker_.SetKnown(session_.samples());
   bus_.Subscribe<pointcloud2_t>(
-      channels_.lidar_points, Queue::kEvery, [this](const pointcloud2_t& m) { Keep(m, &sweeps_); });
-  bus_.Subscribe<image_t>(
-      channels_.camera_image, Queue::kEvery, [this](const image_t& m) { Keep(m, &images_); });
+      channels_.lidar_points, Queue::kEvery, [this](const pointcloud2_t& m) {
+        clocks_.TakeLidar(m.utime);
+        Keep(m, &sweeps_);
+      });
+  bus_.Subscribe<image_t>(channels_.camera_image, Queue::kEvery, [this](const image_t& m) {
+    clocks_.TakeCamera(m.utime);
+    Keep(m, &images_);
+  });
   bus_.Subscribe<lidar_board_t>(
       channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& m) {
         OnBoard(m, &newest_lidar_utime_);
@@ -58,6 +75,8 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
 }
 
 std::string SampleCollectorNode::State() const {
+  const std::string trouble = clocks_.Trouble();
+  if (!trouble.empty()) return "trouble: " + trouble;
   std::string state =
       (is_finished_ ? "finished: " : "running: ") + std::to_string(samples().size()) + " samples";
   if (!second_look_.empty()) {
@@ -117,6 +136,16 @@ void SampleCollectorNode::RequestFinish() {
   finish_utime_ = std::max(sweeps_.NewestUtime(), images_.NewestUtime());
 }
 
+bool SampleCollectorNode::IsTooLate(std::int64_t utime) const {
+  return is_finished_ || (finish_utime_ && utime > *finish_utime_);
+}
+
+void SampleCollectorNode::GoOn() {
+  is_finish_requested_ = false;
+  is_finished_ = false;
+  finish_utime_.reset();
+}
+
 bool SampleCollectorNode::AreDetectorsPastFinish() const {
   return finish_utime_ && std::min(newest_lidar_utime_, newest_camera_utime_) > *finish_utime_;
 }
@@ -170,6 +199,7 @@ template <typename BoardMessage>
 void SampleCollectorNode::OnBoard(const BoardMessage& message, std::int64_t* newest_utime) {
   has_new_frames_ = true;
   *newest_utime = message.utime;
+  if (IsTooLate(message.utime)) return;
   decltype(SightingFromMessage(message)) sighting;
   try {
     sighting = SightingFromMessage(message);
@@ -182,6 +212,7 @@ void SampleCollectorNode::OnBoard(const BoardMessage& message, std::int64_t* new
 
 void SampleCollectorNode::OnCommand(const command_t& message) {
   if (message.command == "capture") {
+    GoOn();
     picker_.RequestCapture();
     is_capture_requested_ = true;
   } else if (message.command == "discard") {
@@ -203,8 +234,7 @@ void SampleCollectorNode::Reset(std::int64_t utime) {
   CancelCapture();
   second_look_.Clear();
   next_look_ = kFirstLook;
-  is_finish_requested_ = false;
-  is_finished_ = false;
+  GoOn();
   Announce(utime, "reset", 0, "");
   PublishSamples();
 }
@@ -232,11 +262,15 @@ void SampleCollectorNode::Discard(const command_t& message) {
 
 void SampleCollectorNode::Decide(const std::vector<PickerDecision>& decisions) {
   for (const PickerDecision& decision : decisions) {
+    const std::string between = BetweenFrames(decision.reason);
+    if (between.empty() && !IsOutOfOrder(decision.reason)) clocks_.NotePair();
     if (decision.unsure && !second_look_.Keep(*decision.unsure, sweeps_, images_)) {
       Count("no room for a second look");
     }
     if (decision.accepted) {
       AcceptWithScene(*decision.accepted);
+    } else if (!between.empty()) {
+      Count(between);
     } else {
       Count(decision.reason);
       const std::string& detail = decision.detail;

@@ -11,6 +11,7 @@
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/rig.hpp"
+#include "sample_collector/clock_watch.hpp"
 #include "sample_collector/second_look.hpp"
 #include "sample_collector/session_log.hpp"
 #include "voqcal/camera_board_t.hpp"
@@ -39,19 +40,23 @@ class SampleCollectorNode : public Module {
   /// No more frames will come: judges what waits, looks again where the lidar was unsure, and says
   /// so in CALIB_SAMPLES. The command "finish"
   /// does the same once no frame has come for a second, since detectors may still be at work. Where
-  /// sensors go on, it is done once both detectors are past the frames that had come before it.
+  /// sensors go on, it is done once both detectors are past the frames that had come before it, and
+  /// later frames give no sample until the command "capture" or "reset".
   void Finish();
 
   const std::vector<BoardSample>& samples() const { return session_.samples(); }
 
  private:
   template <typename Message>
-  void Keep(const Message& message, FrameBuffer* frames);
+  static void Keep(const Message& message, FrameBuffer* frames);
   template <typename BoardMessage>
   void OnBoard(const BoardMessage& message, std::int64_t* newest_utime);
   void OnCommand(const command_t& message);
   void Discard(const command_t& message);
   void RequestFinish();
+  /// A frame that came after "finish" was asked for.
+  bool IsTooLate(std::int64_t utime) const;
+  void GoOn();  ///< After "finish".
   /// Both detectors are past what had come when "finish" was asked for.
   bool AreDetectorsPastFinish() const;
   void SayFinished();
@@ -79,6 +84,7 @@ class SampleCollectorNode : public Module {
   SamplePicker picker_;
   FrameBuffer sweeps_;
   FrameBuffer images_;
+  ClockWatch clocks_;
   SecondLook second_look_;
   std::size_t next_look_;  // at so many samples and kept stops
   SessionLog session_;

@@ -62,7 +62,7 @@ TEST(AdviceOn, KnowsReasonsOfTheSampleCollector) {
           "not yet still for long enough", "board is moving", "no camera frame at that time"));
   EXPECT_EQ(AdviceOn("sample_collector", reasons[0]), "");
   EXPECT_NE(AdviceOn("sample_collector", reasons[1]), "");
-  EXPECT_NE(AdviceOn("sample_collector", reasons[2]), "");
+  EXPECT_NE(AdviceOn("sample_collector", "sweeps between two images"), "");
 }
 
 }  // namespace

@@ -116,17 +116,25 @@ std::string AdviceOn(const std::string& module, const std::string& reason) {
   }
   if (module == "lidar_board_detector") return AdviceOnCounted<LidarBoardMiss>(reason);
   if (module == "sample_collector") {
-    if (reason == "no camera frame at that time") {
-      return "do both sensors take their time from one clock?";
+    if (reason == "sweeps between two images") {
+      return "do both sensors take their time from one clock? Their frames are further apart than "
+             "sample_collector.max_pair_offset_s";
     }
-    if (reason == "board is moving") return "let the board rest a second at each place";
+    if (reason == "board is moving") {
+      return "let the board rest a second at each place; one frame a place needs "
+             "sample_collector.num_still_frames: 1";
+    }
   }
   return {};
 }
 
 std::string FailureAdvice(const OfflineRun& run) {
   std::string lines;
+  const std::string trouble = "trouble: ";
   for (const Module* module : run.modules()) {
+    if (BeginsWith(module->State(), trouble)) {
+      return "\n" + module->Name() + ": " + module->State().substr(trouble.size());
+    }
     std::int64_t num_all = 0;
     for (const auto& [what, count] : module->counters()) num_all += IsOfAFrame(what) ? count : 0;
     for (const Failures& failures : FailuresOf(*module)) {

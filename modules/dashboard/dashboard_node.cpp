@@ -1,5 +1,6 @@
 #include "dashboard/dashboard_node.hpp"
 
+#include <ctime>
 #include <stdexcept>
 #include <utility>
 
@@ -19,6 +20,7 @@ namespace {
 
 constexpr std::size_t kMaxEvents = 40;
 constexpr std::chrono::milliseconds kStepPeriod{50};  // a click must not seem to hang
+constexpr std::chrono::milliseconds kHealthPeriod{500};
 
 /// With no page open a frame a second is kept ready for the next.
 std::chrono::steady_clock::duration Period(double rate_hz, bool has_pages) {
@@ -37,7 +39,12 @@ DashboardNode::DashboardNode(const Rig& rig,
                              Bus* bus,
                              DashboardServer* server,
                              const std::filesystem::path& session_folder)
-    : rig_(rig), bus_(*bus), server_(*server), result_file_(session_folder / "extrinsic.yaml") {
+    : rig_(rig),
+      bus_(*bus),
+      server_(*server),
+      session_folder_(session_folder),
+      result_file_(session_folder / "extrinsic.yaml"),
+      health_(rig.channels, {}, Clock::now()) {
   Subscribe();
   Show(Slot::kRig, RigJson(rig_));
 }
@@ -54,16 +61,17 @@ void DashboardNode::Subscribe() {
       });
   bus_.Subscribe<camera_board_t>(
       channels.camera_board, Queue::kState, [this](const camera_board_t& m) {
-        Try([&] { Show(Slot::kCameraBoard, CameraBoardJson(m, rig_.camera)); });
+        Try([&] { OnCameraBoard(m); });
       });
   bus_.Subscribe<next_pose_t>(channels.next_pose, Queue::kState, [this](const next_pose_t& m) {
-    Show(Slot::kGuidance, GuidanceJson(m));
+    next_pose_ = m;
+    ShowGuidance();
   });
   bus_.Subscribe<event_t>(
       channels.calib_event, Queue::kEvery, [this](const event_t& m) { OnEvent(m); });
   bus_.Subscribe<module_status_t>(
       channels.module_status, Queue::kEvery, [this](const module_status_t& m) {
-        heartbeats_.Take(m, Clock::now());
+        health_.Take(m, Clock::now());
       });
   const auto keep = [this](auto* newest) {
     return [this, newest](const auto& message) {
@@ -90,6 +98,7 @@ void DashboardNode::StepIfDue() {
 bool DashboardNode::Step() {
   next_step_ = Clock::now() + kStepPeriod;
   TakeCommands();
+  ShowHealthIfDue();
   if (!std::exchange(is_state_new_, false)) return false;
   Try([this] { ShowSamples(); });
   Try([this] { ShowResult(); });
@@ -101,8 +110,16 @@ std::optional<std::chrono::steady_clock::time_point> DashboardNode::NextStep() c
 }
 
 void DashboardNode::Republish() {
-  StepIfDue();
-  Show(Slot::kModules, heartbeats_.Json(Clock::now()));
+  next_health_ = {};
+  Step();
+}
+
+void DashboardNode::ShowHealthIfDue() {
+  const Clock::time_point now = Clock::now();
+  if (now < next_health_) return;
+  next_health_ = now + kHealthPeriod;
+  health_.Take(ReadSession(session_folder_, std::time(nullptr)), now);
+  Show(Slot::kModules, ModulesJson(health_, rig_.channels, now));
 }
 
 void DashboardNode::OnImage(const image_t& message) {
@@ -123,6 +140,19 @@ void DashboardNode::OnPoints(const pointcloud2_t& message) {
         Slot::kCloud,
         CloudFrame(FromMessage(message), message.utime, Extrinsic(), rig_.camera, rig_.dashboard));
   });
+}
+
+void DashboardNode::OnCameraBoard(const camera_board_t& message) {
+  board_camera_.reset();
+  Show(Slot::kCameraBoard, CameraBoardJson(message, rig_.camera));
+  if (message.miss.empty()) board_camera_ = FromMessage(message).pose;
+  ShowGuidance();
+}
+
+void DashboardNode::ShowGuidance() {
+  if (!next_pose_) return;
+  Show(Slot::kGuidance,
+       GuidanceJson(*next_pose_, OrderFor(*next_pose_, board_camera_, rig_.camera)));
 }
 
 void DashboardNode::OnEvent(const event_t& message) {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "dashboard/heartbeats.hpp"
 #include "dashboard/page_state.hpp"
 #include "dashboard/server.hpp"
+#include "health/rig_health.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/rig.hpp"
@@ -47,11 +47,16 @@ class DashboardNode : public Module {
   void TakeCommands();
   void OnImage(const image_t& message);
   void OnPoints(const pointcloud2_t& message);
+  void OnCameraBoard(const camera_board_t& message);
+  /// The order changes with the board that is moved.
+  void ShowGuidance();
   void OnEvent(const event_t& message);
   /// Removes the reject of the same cause since the last other event. @return its count.
   int TakeSameRejects(const event_t& message);
   void SendCommand(const PageRequest& request);
 
+  /// Faults are to be seen at once: more often than heartbeats come.
+  void ShowHealthIfDue();
   void ShowSamples();
   void ShowResult();
   void ShowNoResult(const std::string& problem);
@@ -69,14 +74,18 @@ class DashboardNode : public Module {
   Rig rig_;
   Bus& bus_;
   DashboardServer& server_;
+  std::filesystem::path session_folder_;
   std::filesystem::path result_file_;
   std::array<std::string, kNumSlots> shown_;
   Clock::time_point next_step_;
   Clock::time_point next_image_;
   Clock::time_point next_cloud_;
-  Heartbeats heartbeats_;
+  Clock::time_point next_health_;
+  RigHealth health_;
   std::deque<CountedEvent> events_;  ///< The newest first; rejects of one cause together.
   bool is_state_new_ = false;        ///< Samples or what is made of them changed.
+  std::optional<next_pose_t> next_pose_;
+  std::optional<BoardPose> board_camera_;  ///< Where the camera sees it, in the newest image.
   std::optional<samples_t> samples_;
   std::optional<voq_sets_t> sets_;
   std::optional<extrinsic_averaged_t> averaged_;

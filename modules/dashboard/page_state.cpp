@@ -1,6 +1,7 @@
 #include "dashboard/page_state.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -176,6 +177,31 @@ std::string NoResultJson(const std::string& problem, const std::string& working_
   return Text(json);
 }
 
+// "beat" is new each second, so that a page knows that it is still told.
+std::string ModulesJson(const RigHealth& health, const Channels& channels, RigHealth::Time now) {
+  Json json = Of(Slot::kModules);
+  json["beat"] = std::chrono::floor<std::chrono::seconds>(now.time_since_epoch()).count();
+  json["modules"] = Json::array();
+  for (const auto& [name, heard] : health.heard()) {
+    json["modules"].push_back({{"name", name},
+                               {"state", heard.status.state},
+                               {"health", ToString(health.HealthOf(name, now))}});
+  }
+  json["faults"] = Json::array();
+  for (const Fault& fault : health.Faults(now)) {
+    json["faults"].push_back({{"of", fault.of},
+                              {"what", fault.what},
+                              {"cause", fault.cause},
+                              {"remedy", fault.remedy},
+                              {"is_grave", fault.is_grave}});
+  }
+  json["flows"] = {{"lidar", ToString(health.FlowOf(channels.lidar_points, now))},
+                   {"camera", ToString(health.FlowOf(channels.camera_image, now))},
+                   {"lidar_board", ToString(health.FlowOf(channels.lidar_board, now))},
+                   {"camera_board", ToString(health.FlowOf(channels.camera_board, now))}};
+  return Text(json);
+}
+
 std::string LidarBoardJson(const lidar_board_t& message) {
   Json json = Of(Slot::kLidarBoard);
   json["utime"] = message.utime;
@@ -204,10 +230,11 @@ std::string CameraBoardJson(const camera_board_t& message, const CameraModel& ca
   return Text(json);
 }
 
-std::string GuidanceJson(const next_pose_t& message) {
+std::string GuidanceJson(const next_pose_t& message, const Order& order) {
   Json json = Of(Slot::kGuidance);
   json["problem"] = message.problem;
-  json["advice"] = message.advice;
+  json["advice"] = order.words;
+  json["away_m"] = order.away_m;
   json["unit"] = message.unit;
   json["tolerance"] = message.tolerance;
   json["min_range_m"] = message.min_range_m;

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "core/board/board_sample.hpp"
+#include "dashboard/order.hpp"
+#include "health/rig_health.hpp"
 #include "rig/rig.hpp"
 #include "voqcal/assessment_t.hpp"
 #include "voqcal/camera_board_t.hpp"
@@ -44,9 +46,13 @@ std::string ResultJson(const extrinsic_refined_t& refined,
 /// That there is no estimate, and why.
 std::string NoResultJson(const std::string& problem, const std::string& working_on);
 
+/// How each module is, what is wrong, and what comes of the four streams that samples are made of.
+std::string ModulesJson(const RigHealth& health, const Channels& channels, RigHealth::Time now);
+
 std::string LidarBoardJson(const lidar_board_t& message);
 std::string CameraBoardJson(const camera_board_t& message, const CameraModel& camera);
-std::string GuidanceJson(const next_pose_t& message);
+/// @param order  what it asks for, from where the board is now.
+std::string GuidanceJson(const next_pose_t& message, const Order& order);
 
 /// An event, and how often there was one of the same cause.
 struct CountedEvent {

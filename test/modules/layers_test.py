@@ -17,8 +17,9 @@ ROOMS = {
     "rig": {"core", "files"},
     "result": {"core", "files"},
     "messaging": {"core", "files", "rig", "result", "images", "voqcal"},  # voqcal: what lcm-gen makes
+    "health": {"core", "rig", "voqcal"},
 }
-PROCESS = {"core", "files", "rig", "result", "messaging", "images", "voqcal"}  # never another process
+PROCESS = {"core", "files", "rig", "result", "messaging", "health", "images", "voqcal"}  # never another process
 
 
 def core_rooms(modules):

@@ -15,7 +15,7 @@ export const demand = (isMet, problem) => {
 };
 export const say = (text) => process.stdout.write(`${text}\n`);
 
-export const SIZES = { desktop: { width: 1280, height: 900 }, phone: { width: 390, height: 844 } };
+export const SIZES = { desktop: { width: 1280, height: 900 }, phone: { width: 390, height: 844 }, landscape: { width: 844, height: 390 } };
 
 function chromiumPath() {
   try {

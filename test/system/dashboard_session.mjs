@@ -78,6 +78,7 @@ async function discardOne() {
 
 // The stop whose sample was discarded may have given another by itself since: "Not taken".
 async function captureByKey() {
+  await until(() => !document.getElementById("capture").disabled);
   await page.locator("body").press("c");
   await until(() => /^(Sample \d+|Not) taken/.test(document.getElementById("said").textContent));
 }

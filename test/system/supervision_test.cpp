@@ -118,13 +118,21 @@ TEST_F(Supervision, ADriverHasEndedOnlyInTheSessionThatRuns) {
   EXPECT_THAT(test::Run(status).out, HasSubstr("camera_driver          done\n"));
 }
 
-TEST_F(Supervision, AKilledModuleIsStartedAgain) {
-  ASSERT_EQ(Up({"--only", "voq_selector"}).status, 0);
+TEST_F(Supervision, AKilledModuleIsStartedAgainAndARecorderThatEndedIsTold) {
+  ASSERT_EQ(Up({"--only", "voq_selector", "--record"}).status, 0);
   const pid_t before = PidOf("voq_selector");
   kill(before, SIGKILL);
   const test::Outcome status = Status("voq_selector");
   EXPECT_EQ(status.status, 0) << status.out << status.err;
   EXPECT_NE(PidOf("voq_selector"), before);
+
+  test::Run({"supervisorctl", "-c", session_ + "/supervisor.conf", "stop", "lcm-logger"});
+  const test::Outcome told = test::Run(
+      {test::Tool("status"), rig_, "--session", session_, "--once", "--modules", "voq_selector"});
+  EXPECT_EQ(told.status, 1);
+  EXPECT_THAT(told.out,
+              AllOf(HasSubstr("WRONG   Nothing is recorded: lcm-logger was stopped\n"),
+                    HasSubstr("note    voq_selector was started again")));
 }
 
 TEST_F(Supervision, DownEndsWhatAKilledSupervisorLeft) {

@@ -1,5 +1,7 @@
 #include "rig_status/status_page.hpp"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-using Health = StatusPage::Health;
+using Health = ModuleHealth;
 
 StatusPage::Time At(double time_s) {
   return StatusPage::Time(std::chrono::duration_cast<StatusPage::Time::duration>(
@@ -58,23 +60,25 @@ module_status_t StatusOf(const std::string& session, std::int64_t seq) {
 }
 
 TEST(StatusPage, NamesTwoSessionsThatRunTheSameModule) {
-  StatusPage page({"assessor"});
+  StatusPage page(Channels{}, {"assessor"}, At(0));
   page.Take(StatusOf("a:/one", 7), At(0));
-  EXPECT_THAT(page.Rivals(At(0)), IsEmpty());
-  EXPECT_THAT(page.Rivals(At(0), "a:/one"), IsEmpty());
-  EXPECT_THAT(page.Rivals(At(0), "b:/two"), ElementsAre("assessor of a:/one runs on this network"));
+  EXPECT_THAT(page.health().Rivals(At(0)), IsEmpty());
+  EXPECT_THAT(page.health().Rivals(At(0), "a:/one"), IsEmpty());
+  EXPECT_THAT(page.health().Rivals(At(0), "b:/two"),
+              ElementsAre("assessor of a:/one runs on this network"));
   page.Take(StatusOf("b:/two", 2), At(1));
-  EXPECT_THAT(page.Rivals(At(1)),
+  EXPECT_THAT(page.health().Rivals(At(1)),
               ElementsAre("assessor of a:/one and of b:/two runs on this network"));
   EXPECT_FALSE(page.IsAllGood(At(1)));
-  EXPECT_THAT(page.Text(At(1)), HasSubstr("\nTWO SESSIONS  assessor of a:/one and"));
+  EXPECT_THAT(page.Text(At(1)),
+              HasSubstr("WRONG   Two sessions run on one network: assessor of a:/one and"));
   EXPECT_THAT(page.Text(At(1)), Not(HasSubstr("restarted")));
   page.Take(StatusOf("b:/two", 6), At(5));
   EXPECT_TRUE(page.IsAllGood(At(5)));  // the first is gone
 }
 
 TEST(StatusPage, LossesAreNotGood) {
-  StatusPage page({"assessor"});
+  StatusPage page(Channels{}, {"assessor"}, At(0));
   module_status_t status = Status("assessor", 1, "running");
   AddChannel(Channel("CALIB_SAMPLES", 9, 1), &status);
   page.Take(status, At(0));
@@ -82,7 +86,7 @@ TEST(StatusPage, LossesAreNotGood) {
 }
 
 TEST(StatusPage, NamesWhoWasNeverHeard) {
-  StatusPage page({"lidar_driver", "assessor"});
+  StatusPage page(Channels{}, {"lidar_driver", "assessor"}, At(0));
   page.Take(Status("assessor", 1, "running"), At(0));
   EXPECT_FALSE(page.IsAllGood(At(0)));
   EXPECT_THAT(page.Text(At(0)),
@@ -92,27 +96,30 @@ TEST(StatusPage, NamesWhoWasNeverHeard) {
 }
 
 TEST(StatusPage, ADriverThatEndedBeforeAnyoneListenedIsNotSilent) {
-  StatusPage page({"lidar_driver", "camera_driver"}, {"lidar_driver"});
-  EXPECT_EQ(page.HealthOf("lidar_driver", At(0)), Health::kGood);
+  StatusPage page(Channels{}, {"lidar_driver", "camera_driver"}, At(0));
+  SessionFacts facts;
+  facts.programs["lidar_driver"].history.has_ended_well = true;
+  page.Take(facts, At(0));
+  EXPECT_EQ(page.health().HealthOf("lidar_driver", At(0)), Health::kEnded);
   EXPECT_THAT(
       page.Text(At(0)),
       AllOf(HasSubstr("lidar_driver           done\n"), HasSubstr("\nsilent  camera_driver\n")));
   page.Take(Status("lidar_driver", 1, "running"), At(0));  // it was started again
-  EXPECT_EQ(page.HealthOf("lidar_driver", At(9)), Health::kSilent);
+  EXPECT_EQ(page.health().HealthOf("lidar_driver", At(9)), Health::kSilent);
 }
 
 TEST(StatusPage, IsSilentAfterThreeSecondsWithoutAHeartbeat) {
-  StatusPage page({"assessor"});
+  StatusPage page(Channels{}, {"assessor"}, At(0));
   page.Take(Status("assessor", 1, "running"), At(10));
-  EXPECT_EQ(page.HealthOf("assessor", At(13)), Health::kGood);
-  EXPECT_EQ(page.HealthOf("assessor", At(13.1)), Health::kSilent);
+  EXPECT_EQ(page.health().HealthOf("assessor", At(13)), Health::kGood);
+  EXPECT_EQ(page.health().HealthOf("assessor", At(13.1)), Health::kSilent);
   EXPECT_THAT(page.Text(At(15)), HasSubstr("SILENT for 5 s"));
   page.Take(Status("assessor", 2, "running"), At(16));
-  EXPECT_EQ(page.HealthOf("assessor", At(16)), Health::kGood);
+  EXPECT_EQ(page.health().HealthOf("assessor", At(16)), Health::kGood);
 }
 
 TEST(StatusPage, AModuleThatSaidThatItHasEndedIsNotSilent) {
-  StatusPage page({"lidar_driver", "camera_driver"});
+  StatusPage page(Channels{}, {"lidar_driver", "camera_driver"}, At(0));
   page.Take(Status("lidar_driver", 9, "done"), At(0));
   page.Take(Status("camera_driver", 9, "stopped"), At(0));
   EXPECT_TRUE(page.IsAllGood(At(100)));
@@ -120,44 +127,44 @@ TEST(StatusPage, AModuleThatSaidThatItHasEndedIsNotSilent) {
 }
 
 TEST(StatusPage, AFailedModuleIsNotGood) {
-  StatusPage page({"assessor"});
+  StatusPage page(Channels{}, {"assessor"}, At(0));
   page.Take(Status("assessor", 3, "failed: disk full"), At(0));
-  EXPECT_EQ(page.HealthOf("assessor", At(0)), Health::kFailed);
+  EXPECT_EQ(page.health().HealthOf("assessor", At(0)), Health::kFailed);
   EXPECT_FALSE(page.IsAllGood(At(0)));
   EXPECT_THAT(page.Text(At(0)), HasSubstr("failed: disk full"));
 }
 
 TEST(StatusPage, TellsWhoLostHowManyOfWhat) {
-  StatusPage page({"lidar_board_detector"});
+  StatusPage page(Channels{}, {"lidar_board_detector"}, At(0));
   module_status_t status = Status("lidar_board_detector", 1, "running");
   AddChannel(Channel("LIDAR_POINTS", 95, 5), &status);
   page.Take(status, At(0));
-  EXPECT_THAT(page.Text(At(0)),
+  EXPECT_THAT(page.Details(At(0)),
               AllOf(ContainsRegex("LIDAR_POINTS +10.0 Hz +95 received  5 LOST"),
                     HasSubstr("\nlost    lidar_board_detector: 5 of 100 LIDAR_POINTS\n")));
 }
 
 TEST(StatusPage, RateOfSendingIsThatBetweenTwoHeartbeats) {
-  StatusPage page({"lidar_driver"});
+  StatusPage page(Channels{}, {"lidar_driver"}, At(0));
   module_status_t status = Status("lidar_driver", 1, "running");
   status.num_published = 100;
   page.Take(status, At(0));
   status.seq = 2;
   status.num_published = 125;
   page.Take(status, At(2));
-  EXPECT_THAT(page.Text(At(2)), ContainsRegex("sends +12.5 Hz +125 sent"));
+  EXPECT_THAT(page.Text(At(2)), HasSubstr("running  sends 12.5 Hz\n"));
 }
 
 TEST(StatusPage, ANumberingThatBeginsAnewIsARestart) {
-  StatusPage page({"assessor"});
+  StatusPage page(Channels{}, {"assessor"}, At(0));
   for (const std::int64_t seq : {7, 8, 1, 2, 1}) {
     page.Take(Status("assessor", seq, "running"), At(0));
   }
-  EXPECT_THAT(page.Text(At(0)), HasSubstr("assessor               running  restarted 2 times\n"));
+  EXPECT_THAT(page.Text(At(0)), HasSubstr("assessor               running  restarted 2 times"));
 }
 
 TEST(StatusPage, ShowsTheMostFrequentResultsAndMissesFirst) {
-  StatusPage page({"assessor"});
+  StatusPage page(Channels{}, {"assessor"}, At(0));
   module_status_t status = Status("assessor", 1, "running");
   AddCounter("a", 1, &status);
   AddCounter("b", 30, &status);
@@ -165,11 +172,11 @@ TEST(StatusPage, ShowsTheMostFrequentResultsAndMissesFirst) {
   AddCounter("d", 4, &status);
   AddCounter("e", 5, &status);
   page.Take(status, At(0));
-  EXPECT_THAT(page.Text(At(0)), HasSubstr("    counts 30 b, 5 e, 4 d, 2 c, ...\n"));
+  EXPECT_THAT(page.Details(At(0)), HasSubstr("    counts 30 b, 5 e, 4 d, 2 c, ...\n"));
 }
 
 TEST(StatusPage, KeepsTheLastFiveEvents) {
-  StatusPage page({});
+  StatusPage page(Channels{}, {}, At(0));
   for (int i = 1; i <= 6; ++i) {
     event_t event{};
     event.kind = i == 6 ? "rejected" : "accepted";
@@ -177,14 +184,28 @@ TEST(StatusPage, KeepsTheLastFiveEvents) {
     event.reason = i == 6 ? "board is moving" : "";
     page.Take(event);
   }
-  EXPECT_THAT(page.Text(At(0)),
+  EXPECT_THAT(page.Details(At(0)),
               AllOf(HasSubstr("    accepted sample 2\n"),
                     HasSubstr("    rejected: board is moving\n"),
                     Not(HasSubstr("sample 1\n"))));
 }
 
+// Of all modules, with more faults and events than have room.
+TEST(StatusPage, FitsATerminalOf24Rows) {
+  StatusPage page(Channels{}, AllModuleNames(), At(0));
+  for (const std::string& module : AllModuleNames()) {
+    module_status_t status = Status(module, 9, "running");
+    AddChannel(Channel("LIDAR_POINTS", 95, 5), &status);
+    page.Take(status, At(0));
+    page.Take(event_t{});
+  }
+  const std::string text = page.Text(At(9));
+  EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 24) << text;
+  EXPECT_THAT(text, HasSubstr(" more\n"));
+}
+
 TEST(StatusPage, ListsModulesThatNobodyAskedFor) {
-  StatusPage page({"assessor"});
+  StatusPage page(Channels{}, {"assessor"}, At(0));
   page.Take(Status("assessor", 1, "running"), At(0));
   page.Take(Status("stranger", 1, "running"), At(0));
   EXPECT_THAT(page.Text(At(100)), AllOf(HasSubstr("stranger "), HasSubstr("\nsilent  assessor\n")));

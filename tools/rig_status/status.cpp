@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -12,10 +13,12 @@
 #include <vector>
 
 #include "common/tool_main.hpp"
+#include "health/session_watch.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/spin.hpp"
 #include "rig/rig.hpp"
 #include "rig_status/status_page.hpp"
+#include "rig_status/terminal.hpp"
 
 namespace voqcal {
 namespace {
@@ -25,9 +28,11 @@ using Clock = std::chrono::steady_clock;
 struct StatusArgs {
   std::filesystem::path rig;
   std::optional<std::string> lcm_url;
-  std::vector<std::string> modules = AllModuleNames();
-  std::vector<std::string> ended;
+  std::vector<std::string> modules;  ///< Empty: all.
+  std::optional<std::filesystem::path> session;
   bool is_once = false;
+  bool has_details = false;
+  double starting_s = 0;
   std::optional<std::filesystem::path> alone_in;
 };
 
@@ -35,35 +40,99 @@ struct StatusArgs {
 constexpr std::chrono::milliseconds kProbeDuration{1500};
 /// Two heartbeats of each module: rates of sending need both.
 constexpr std::chrono::milliseconds kOnceDuration{2500};
+/// Of looks into the session's folder.
+constexpr std::chrono::milliseconds kLookPeriod{500};
 
-void Subscribe(const Channels& channels, Bus* bus, StatusPage* page) {
-  bus->Subscribe<module_status_t>(
-      channels.module_status, Queue::kEvery, [page](const module_status_t& m) {
-        page->Take(m, Clock::now());
-      });
-  bus->Subscribe<event_t>(
-      channels.calib_event, Queue::kEvery, [page](const event_t& m) { page->Take(m); });
-}
+/// Hears a rig and keeps its page.
+class Listener {
+ public:
+  explicit Listener(const StatusArgs& args)
+      : session_(args.session),
+        rig_(LoadRig(args.rig)),
+        url_(args.lcm_url.value_or(rig_.lcm_url)),
+        bus_(url_),
+        page_(rig_.channels, args.modules.empty() ? AllModuleNames() : args.modules, Clock::now()) {
+    bus_.Subscribe<module_status_t>(
+        rig_.channels.module_status, Queue::kEvery, [this](const module_status_t& m) {
+          page_.Take(m, Clock::now());
+        });
+    bus_.Subscribe<event_t>(
+        rig_.channels.calib_event, Queue::kEvery, [this](const event_t& m) { page_.Take(m); });
+  }
 
-void PrintOnce(const StatusArgs& args, Bus* bus, StatusPage* page) {
-  const Clock::time_point end = Clock::now() + kOnceDuration;
-  while (Clock::now() < end) bus->HandleOnce(std::chrono::milliseconds(100));
-  std::fputs(page->Text(Clock::now()).c_str(), stdout);
-  if (!page->IsAllGood(Clock::now())) {
-    throw std::runtime_error(args.rig.string() + ": not every module is well");
+  void Hear(std::chrono::milliseconds time) {
+    const Clock::time_point end = Clock::now() + time;
+    while (Clock::now() < end) {
+      bus_.HandleOnce(std::chrono::milliseconds(100));
+      if (session_ && Clock::now() >= next_look_) LookIntoTheSession();
+    }
+  }
+
+  bool HaveAllSensorsSent() const {
+    const auto has_come = [this](const std::string& channel) {
+      const Flow flow = page_.health().FlowOf(channel, Clock::now());
+      return flow == Flow::kFlows || flow == Flow::kEnded;
+    };
+    return has_come(rig_.channels.lidar_points) && has_come(rig_.channels.camera_image);
+  }
+
+  const StatusPage& page() const { return page_; }
+  const std::string& url() const { return url_; }
+
+ private:
+  void LookIntoTheSession() {
+    next_look_ = Clock::now() + kLookPeriod;
+    page_.Take(ReadSession(*session_, std::time(nullptr)), Clock::now());
+  }
+
+  std::optional<std::filesystem::path> session_;
+  Rig rig_;
+  std::string url_;
+  Bus bus_;
+  StatusPage page_;
+  Clock::time_point next_look_;
+};
+
+void PrintOnce(const StatusArgs& args) {
+  Listener listener(args);
+  listener.Hear(kOnceDuration);
+  const StatusPage& page = listener.page();
+  const Clock::time_point now = Clock::now();
+  std::fputs((args.has_details ? page.Details(now) : page.Text(now)).c_str(), stdout);
+  if (!page.IsAllGood(now)) {
+    throw std::runtime_error(args.rig.string() + ": not all is well");
   }
 }
 
+/// Returns once all modules run and both sensors send; at the latest after args.starting_s, and
+/// then with what is wrong.
+void PrintFaultsOfStart(const StatusArgs& args) {
+  Listener listener(args);
+  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                   std::chrono::duration<double>(args.starting_s));
+  do {
+    listener.Hear(std::chrono::milliseconds(200));
+    const bool is_well = listener.page().IsAllGood(Clock::now());
+    if (is_well && listener.HaveAllSensorsSent()) return;
+  } while (Clock::now() < end);
+  std::string faults;
+  for (const Fault& fault : listener.page().health().Faults(Clock::now())) {
+    if (fault.is_grave) faults += ToString(fault) + '\n';
+  }
+  if (!faults.empty()) throw std::runtime_error(faults);
+}
+
 /// Fails if another session runs any of the modules on this network.
-void RequireAlone(const StatusArgs& args, const std::string& url, Bus* bus, StatusPage* page) {
-  const Clock::time_point end = Clock::now() + kProbeDuration;
-  while (Clock::now() < end) bus->HandleOnce(std::chrono::milliseconds(100));
+void RequireAlone(const StatusArgs& args) {
+  Listener listener(args);
+  listener.Hear(kProbeDuration);
+  const RigHealth& health = listener.page().health();
+  const std::vector<std::string> ours = args.modules.empty() ? AllModuleNames() : args.modules;
   std::string problems;
-  for (const std::string& rival : page->Rivals(Clock::now(), SessionName(*args.alone_in))) {
+  for (const std::string& rival : health.Rivals(Clock::now(), SessionName(*args.alone_in))) {
     const std::string module = rival.substr(0, rival.find(' '));
-    const auto& ours = args.modules;
     if (std::find(ours.begin(), ours.end(), module) == ours.end()) continue;
-    problems += url + ": " + rival + '\n';
+    problems += listener.url() + ": " + rival + '\n';
   }
   if (problems.empty()) return;
   throw std::runtime_error(
@@ -72,33 +141,30 @@ void RequireAlone(const StatusArgs& args, const std::string& url, Bus* bus, Stat
       "another port in lcm.url");
 }
 
-/// Until Ctrl-C.
-void PrintEachSecond(Bus* bus, StatusPage* page) {
+/// Until q or Ctrl-C.
+void PrintEachSecond(const StatusArgs& args) {
   const StopOnSignal stop;
-  Clock::time_point next = Clock::now() + std::chrono::seconds(1);
-  while (!stop.IsRequested()) {
-    bus->HandleOnce(std::chrono::milliseconds(100));
-    if (Clock::now() < next) continue;
-    next += std::chrono::seconds(1);
-    // Cursor to the top left, clear the page.
-    std::printf("\033[H\033[J%s", page->Text(Clock::now()).c_str());
-    std::fflush(stdout);
+  const Terminal terminal;
+  Listener listener(args);
+  bool has_details = args.has_details;
+  for (int tick = 0; !stop.IsRequested(); ++tick) {
+    listener.Hear(std::chrono::milliseconds(100));
+    const char key = terminal.Key();
+    if (key == 'q') return;
+    if (key == 'd') has_details = !has_details;
+    if (tick % 10 != 0 && key != 'd') continue;
+    const StatusPage& page = listener.page();
+    const Clock::time_point now = Clock::now();
+    terminal.Show((has_details ? page.Details(now) : page.Text(now)) + "d: details  q: end",
+                  has_details);
   }
 }
 
 void ShowStatus(const StatusArgs& args) {
-  const Rig rig = LoadRig(args.rig);
-  const std::string url = args.lcm_url.value_or(rig.lcm_url);
-  Bus bus(url);
-  StatusPage page(args.modules, args.ended);
-  Subscribe(rig.channels, &bus, &page);
-  if (args.alone_in) {
-    RequireAlone(args, url, &bus, &page);
-  } else if (args.is_once) {
-    PrintOnce(args, &bus, &page);
-  } else {
-    PrintEachSecond(&bus, &page);
-  }
+  if (args.alone_in) return RequireAlone(args);
+  if (args.starting_s > 0) return PrintFaultsOfStart(args);
+  if (args.is_once) return PrintOnce(args);
+  PrintEachSecond(args);
 }
 
 }  // namespace
@@ -114,13 +180,18 @@ int main(int argc, char** argv) {
   app.add_option("--modules", args.modules, "Those that should be heard; without it all")
       ->delimiter(',')
       ->check(CLI::IsMember(voqcal::AllModuleNames()));
-  app.add_option("--ended", args.ended, "Those that are known to have ended as planned")
-      ->delimiter(',')
-      ->check(CLI::IsMember(voqcal::AllModuleNames()));
+  app.add_option("--session",
+                 args.session,
+                 "Its folder on this host: tells which programs ended, and of recording and disk");
+  app.add_flag("--details", args.has_details, "Each channel, loss and count (the key d)");
   app.add_flag("--once",
                args.is_once,
-               "Listen for 2.5 s, print one page; status 1 if a module is silent, has failed or is "
-               "run by two sessions, or if messages were lost");
+               "Listen for 2.5 s, print one page; status 1 if anything is wrong, or if messages "
+               "were lost");
+  app.add_option("--starting",
+                 args.starting_s,
+                 "Wait so many seconds for all modules to run and both sensors to send; print only "
+                 "what is wrong then, with status 1");
   app.add_option("--alone-in",
                  args.alone_in,
                  "Listen for 1.5 s, print nothing; status 1 and who it is if a session other than "

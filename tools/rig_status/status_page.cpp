@@ -1,8 +1,6 @@
 #include "rig_status/status_page.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <sstream>
 #include <utility>
 
 #include "core/format.hpp"
@@ -10,23 +8,11 @@
 namespace voqcal {
 namespace {
 
-// Heartbeats come once a second: two that got lost are no alarm.
-constexpr std::chrono::seconds kSilence{3};
 constexpr std::size_t kMaxEvents = 5;
 constexpr std::size_t kMaxCounters = 4;
-
-bool StartsWith(const std::string& text, const std::string& prefix) {
-  return text.compare(0, prefix.size(), prefix) == 0;
-}
-
-/// A module that said so is gone for good, not silent.
-bool HasEnded(const module_status_t& status) {
-  return status.state == "done" || status.state == "stopped";
-}
-
-double SecondsBetween(StatusPage::Time from, StatusPage::Time to) {
-  return std::chrono::duration<double>(to - from).count();
-}
+// Of a page of 24 rows: 11 modules, three faults of two rows, two events.
+constexpr std::size_t kBriefFaults = 3;
+constexpr std::size_t kBriefEvents = 2;
 
 std::string ChannelText(const channel_status_t& channel) {
   std::string text = Format("    reads %-22s %6.1f Hz  %8lld received",
@@ -63,142 +49,108 @@ std::string EventText(const event_t& event) {
   return text + '\n';
 }
 
+std::string FaultText(const Fault& fault) {
+  return (fault.is_grave ? "WRONG   " : "note    ") + fault.what +
+         (fault.cause.empty() ? "" : ": " + fault.cause) + "\n        " + fault.remedy + '\n';
+}
+
 }  // namespace
 
-std::vector<std::string> AllModuleNames() {
-  std::istringstream names(VOQCAL_MODULES);  // modules/names.txt
-  return {std::istream_iterator<std::string>(names), {}};
-}
-
-StatusPage::StatusPage(std::vector<std::string> modules, std::vector<std::string> ended)
-    : modules_(std::move(modules)), ended_(std::move(ended)) {}
-
-void StatusPage::Take(const module_status_t& status, Time now) {
-  const auto found = heard_.find(status.module);
-  Heard heard{status, now};
-  if (found != heard_.end()) {
-    const Heard& before = found->second;
-    const bool is_same = status.session == before.status.session;
-    const bool is_restarted = is_same && status.seq <= before.status.seq;
-    heard.num_restarts = before.num_restarts + (is_restarted ? 1 : 0);
-    const double elapsed_s = SecondsBetween(before.at, now);
-    if (is_same && !is_restarted && elapsed_s > 0) {
-      heard.published_hz =
-          static_cast<double>(status.num_published - before.status.num_published) / elapsed_s;
-    }
-  }
-  if (found != heard_.end()) heard.sessions = found->second.sessions;
-  heard.sessions[status.session] = now;
-  if (HasEnded(status)) heard.sessions.erase(status.session);
-  heard_[status.module] = std::move(heard);
-}
+StatusPage::StatusPage(const Channels& channels, std::vector<std::string> modules, Time begin)
+    : modules_(std::move(modules)), health_(channels, modules_, begin) {}
 
 void StatusPage::Take(const event_t& event) {
   events_.push_back(event);
   if (events_.size() > kMaxEvents) events_.pop_front();
 }
 
-StatusPage::Health StatusPage::HealthOf(const std::string& module, Time now) const {
-  const auto found = heard_.find(module);
-  if (found == heard_.end()) {
-    return IsKnownToHaveEnded(module) ? Health::kGood : Health::kSilent;
-  }
-  const Heard& heard = found->second;
-  if (StartsWith(heard.status.state, "failed")) return Health::kFailed;
-  if (HasEnded(heard.status)) return Health::kGood;
-  return now - heard.at > kSilence ? Health::kSilent : Health::kGood;
-}
-
 bool StatusPage::IsAllGood(Time now) const {
-  if (!Rivals(now).empty() || !LostText().empty()) return false;
+  const std::vector<Fault> faults = health_.Faults(now);
+  const auto is_grave = [](const Fault& fault) { return fault.is_grave; };
+  if (std::any_of(faults.begin(), faults.end(), is_grave) || !health_.Losses().empty())
+    return false;
   return std::all_of(modules_.begin(), modules_.end(), [this, now](const std::string& module) {
-    return HealthOf(module, now) == Health::kGood;
+    const ModuleHealth health = health_.HealthOf(module, now);
+    return health == ModuleHealth::kGood || health == ModuleHealth::kEnded;
   });
 }
 
 std::string StatusPage::Text(Time now) const {
+  std::string text = FaultsText(now, kBriefFaults);
+  for (const std::string& module : Listed()) text += LineOf(module, now);
+  return text + EventsText(kBriefEvents) + LastLines(now);
+}
+
+std::string StatusPage::Details(Time now) const {
+  std::string text = FaultsText(now, health_.Faults(now).size());
+  for (const std::string& module : Listed()) text += LineOf(module, now) + DetailsOf(module);
+  return text + EventsText(kMaxEvents) + LastLines(now);
+}
+
+std::vector<std::string> StatusPage::Listed() const {
+  std::vector<std::string> listed = modules_;
+  for (const auto& each : health_.heard()) {
+    const bool is_new = std::find(listed.begin(), listed.end(), each.first) == listed.end();
+    if (is_new) listed.push_back(each.first);
+  }
+  return listed;
+}
+
+std::string StatusPage::FaultsText(Time now, std::size_t max_faults) const {
+  const std::vector<Fault> faults = health_.Faults(now);
   std::string text;
-  for (const std::string& module : modules_) text += ModuleText(module, now);
-  for (const auto& [module, heard] : heard_) {
-    const bool is_listed = std::find(modules_.begin(), modules_.end(), module) != modules_.end();
-    if (!is_listed) text += ModuleText(module, now);
-  }
-  if (!events_.empty()) text += "last events\n";
-  for (const event_t& event : events_) text += EventText(event);
-  for (const std::string& rival : Rivals(now)) text += "TWO SESSIONS  " + rival + '\n';
-  const std::string lost = LostText();
-  return text + "silent  " + SilentText(now) + "\nlost    " + (lost.empty() ? "nothing" : lost) +
-         '\n';
+  for (std::size_t i = 0; i < std::min(faults.size(), max_faults); ++i)
+    text += FaultText(faults[i]);
+  if (faults.size() > max_faults) text += Format("        %zu more\n", faults.size() - max_faults);
+  return text;
 }
 
-std::vector<std::string> StatusPage::Rivals(Time now, const std::string& own) const {
-  std::vector<std::string> rivals;
-  for (const auto& [module, heard] : heard_) {
-    std::vector<std::string> sessions = SessionsOf(heard, now);
-    sessions.erase(std::remove(sessions.begin(), sessions.end(), own), sessions.end());
-    if (sessions.size() < (own.empty() ? 2U : 1U)) continue;
-    std::string names;
-    for (const std::string& session : sessions)
-      names += (names.empty() ? "" : " and of ") + session;
-    rivals.push_back(module + " of " + names + " runs on this network");
-  }
-  return rivals;
+std::string StatusPage::EventsText(std::size_t max_events) const {
+  if (events_.empty()) return {};
+  std::string text = "last events\n";
+  const std::size_t first = events_.size() - std::min(events_.size(), max_events);
+  for (std::size_t i = first; i < events_.size(); ++i) text += EventText(events_[i]);
+  return text;
 }
 
-std::vector<std::string> StatusPage::SessionsOf(const Heard& heard, Time now) const {
-  std::vector<std::string> sessions;
-  for (const auto& [session, at] : heard.sessions) {
-    if (now - at <= kSilence) sessions.push_back(session);
+std::string StatusPage::LineOf(const std::string& module, Time now) const {
+  const ModuleHealth health = health_.HealthOf(module, now);
+  const auto found = health_.heard().find(module);
+  if (found == health_.heard().end()) {
+    return Format(
+        "%-22s %s\n", module.c_str(), health == ModuleHealth::kEnded ? "done" : "not heard");
   }
-  return sessions;
-}
-
-std::string StatusPage::ModuleText(const std::string& module, Time now) const {
-  const auto found = heard_.find(module);
-  if (found == heard_.end()) {
-    return Format("%-22s %s\n", module.c_str(), IsKnownToHaveEnded(module) ? "done" : "not heard");
-  }
-  const Heard& heard = found->second;
+  const HeardModule& heard = found->second;
   std::string text = Format("%-22s %s", module.c_str(), heard.status.state.c_str());
-  if (HealthOf(module, now) == Health::kSilent) {
-    text += Format("  SILENT for %.0f s", SecondsBetween(heard.at, now));
+  if (health == ModuleHealth::kSilent) {
+    text += Format("  SILENT for %.0f s", std::chrono::duration<double>(now - heard.at).count());
   }
   if (heard.num_restarts != 0) text += Format("  restarted %d times", heard.num_restarts);
-  text += Format("\n    sends %29.1f Hz  %8lld sent",
-                 heard.published_hz,
-                 static_cast<long long>(heard.status.num_published));
-  if (heard.status.num_publish_failures != 0) {
-    text += Format("  %lld FAILED", static_cast<long long>(heard.status.num_publish_failures));
+  return text + Format("  sends %.1f Hz\n", heard.published_hz);
+}
+
+std::string StatusPage::DetailsOf(const std::string& module) const {
+  const auto found = health_.heard().find(module);
+  if (found == health_.heard().end()) return {};
+  const module_status_t& status = found->second.status;
+  std::string text = Format("    %lld sent", static_cast<long long>(status.num_published));
+  if (status.num_publish_failures != 0) {
+    text += Format("  %lld FAILED", static_cast<long long>(status.num_publish_failures));
   }
   text += '\n';
-  for (const channel_status_t& channel : heard.status.channels) text += ChannelText(channel);
-  return text + CountersText(heard.status.counters);
+  for (const channel_status_t& channel : status.channels) text += ChannelText(channel);
+  return text + CountersText(status.counters);
 }
 
-bool StatusPage::IsKnownToHaveEnded(const std::string& module) const {
-  return std::find(ended_.begin(), ended_.end(), module) != ended_.end();
-}
-
-std::string StatusPage::SilentText(Time now) const {
-  std::string text;
+std::string StatusPage::LastLines(Time now) const {
+  std::string silent;
   for (const std::string& module : modules_) {
-    if (HealthOf(module, now) != Health::kSilent) continue;
-    text += (text.empty() ? "" : ", ") + module;
+    if (health_.HealthOf(module, now) != ModuleHealth::kSilent) continue;
+    silent += (silent.empty() ? "" : ", ") + module;
   }
-  return text.empty() ? "nobody" : text;
-}
-
-std::string StatusPage::LostText() const {
-  std::string text;
-  for (const auto& [module, heard] : heard_) {
-    for (const channel_status_t& channel : heard.status.channels) {
-      if (channel.num_lost == 0) continue;
-      text += (text.empty() ? "" : "; ") + module + ": " + std::to_string(channel.num_lost) +
-              " of " + std::to_string(channel.num_lost + channel.num_received) + " " +
-              channel.channel;
-    }
-  }
-  return text;
+  const std::string losses = health_.Losses();
+  return "silent  " + (silent.empty() ? "nobody" : silent) + "\nlost    " +
+         (losses.empty() ? "nothing" : losses) + '\n';
 }
 
 }  // namespace voqcal

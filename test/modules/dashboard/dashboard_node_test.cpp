@@ -217,16 +217,20 @@ TEST_F(DashboardNodeTest, ShowsNoMoreImagesThanItsRate) {
   EXPECT_EQ(Next(&page, "image")["utime"], 0);
 }
 
-TEST_F(DashboardNodeTest, SaysWhichModulesAreSilent) {
+TEST_F(DashboardNodeTest, SaysWhatIsWrong) {
   module_status_t status{};
   status.module = "assessor";
   status.state = "failed: disk full";
   test::Send(&bus_, rig_.channels.module_status, status);
   node_.Republish();
   test::SocketClient page = Page();
-  const Json module = Next(&page, "modules")["modules"].at(0);
+  const Json health = Next(&page, "modules");
+  const Json module = health["modules"].at(0);
   EXPECT_EQ(module["name"], "assessor");
   EXPECT_EQ(module["health"], "failed");
+  EXPECT_EQ(health["faults"].at(0)["what"], "assessor has failed");
+  EXPECT_EQ(health["faults"].at(0)["cause"], "assessor failed: disk full");
+  EXPECT_EQ(health["flows"]["lidar"], "nothing yet");
 }
 
 }  // namespace

@@ -99,10 +99,10 @@ TEST(CameraBoardJson, TakesCornersOnlyWhereThereIsABoard) {
 TEST(GuidanceJson, HasTheGhostWhereThereIsAdvice) {
   next_pose_t message{};
   message.problem = "no samples";
-  EXPECT_FALSE(Json::parse(GuidanceJson(message)).contains("corners_px"));
+  EXPECT_FALSE(Json::parse(GuidanceJson(message, {})).contains("corners_px"));
   message.problem = "";
   message.worst_error = std::numeric_limits<double>::infinity();
-  const Json json = Json::parse(GuidanceJson(message));
+  const Json json = Json::parse(GuidanceJson(message, {}));
   EXPECT_EQ(json["corners_px"].size(), 4U);
   EXPECT_FALSE(json.contains("corners_lidar_m"));  // no extrinsic is known yet
   EXPECT_TRUE(json["worst_error"].is_null());

@@ -3,6 +3,7 @@
 import { byId, setText } from "./dom.ts";
 import { News } from "./news.ts";
 import { eventText } from "./panels.ts";
+import { signalTaken } from "./signal.ts";
 import type { CommandName, Events, Request, Samples } from "./protocol.ts";
 
 /** What is waited for after a command, said once it takes longer than a moment. */
@@ -26,6 +27,7 @@ export class Actions {
   private timers: number[] = [];
   private readonly news = new News();
   private isLive = false;
+  private mayCapture = false;
   private hasSamples = false;
 
   constructor(private readonly sendRequest: (request: Request) => boolean) {
@@ -60,10 +62,18 @@ export class Actions {
     setText("said", text);
   }
 
-  setLive(isLive: boolean): void {
+  /** @param mayCapture  whether a capture can come to anything. */
+  setLive(isLive: boolean, mayCapture: boolean): void {
     this.isLive = isLive;
+    this.mayCapture = mayCapture;
     if (!isLive) this.stopWaiting();
     this.enable();
+  }
+
+  /** The next thing to press is the largest. */
+  setEnough(isEnough: boolean): void {
+    byId("capture").classList.toggle("main", !isEnough);
+    byId("finish").classList.toggle("main", isEnough);
   }
 
   takeSamples({ samples }: Samples): void {
@@ -76,6 +86,7 @@ export class Actions {
     // Rejects come by the second: they are news only to who waits for a sample.
     const told = news.find((event) => event.event !== "rejected" || this.waitingFor !== null);
     if (told) this.say(eventText(told));
+    if (news.some((event) => event.event === "accepted")) signalTaken();
     if (this.waitingFor === null) return;
     const answers = ANSWERS[this.waitingFor];
     if (news.some((event) => answers.includes(event.event))) this.stopWaiting();
@@ -83,7 +94,7 @@ export class Actions {
 
   private enable(): void {
     const set = (id: string, isOn: boolean) => (byId<HTMLButtonElement>(id).disabled = !isOn);
-    set("capture", this.isLive);
+    set("capture", this.isLive && this.mayCapture);
     for (const id of ["discard", "finish", "reset"]) set(id, this.isLive && this.hasSamples);
   }
 

@@ -42,7 +42,13 @@ export class ImageView {
     this.board = board;
   }
 
-  showGuidance(guidance: Guidance): void {
+  /** Of frames that no longer come. */
+  forgetBoard(): void {
+    this.board = null;
+  }
+
+  /** Null: no order is given. */
+  showGuidance(guidance: Guidance | null): void {
     this.guidance = guidance;
   }
 

@@ -6,28 +6,27 @@ import { Actions } from "./actions.ts";
 import { Connection, type ConnectionState } from "./connection.ts";
 import { Coverage } from "./coverage.ts";
 import { byId, setText } from "./dom.ts";
+import { healthView, type HealthView } from "./health.ts";
 import { ImageView } from "./image_view.ts";
-import { showEvents, showGuidance, showModules, showResult, showSamples } from "./panels.ts";
-import type { CameraBoard, ImageFrame, LidarBoard, Message } from "./protocol.ts";
+import { showEvents, showFaults, showGuidance, showModules, showNoGuidance, showResult, showSamples } from "./panels.ts";
+import type { CameraBoard, Guidance, ImageFrame, LidarBoard, Message, Modules } from "./protocol.ts";
 import { SceneView } from "./scene_view.ts";
 
-const STATES: Record<ConnectionState, string> = {
-  connecting: "Connecting",
-  live: "Live",
-  lost: "Connection lost: trying again",
-  expired: "This address is no longer valid: open the one that the dashboard prints",
-};
 const STALE_MS = 3000;
 
 const image = new ImageView(byId("image"), byId("has-points"));
 const coverage = new Coverage();
 const scene = makeSceneView();
 const connection = new Connection(take, (state) => {
-  byId("connection").dataset.state = state;
-  setText("connection", STATES[state]);
-  actions.setLive(state === "live");
+  connectionState = state;
+  showHealth();
 });
 const actions = new Actions((request) => connection.send(request));
+let connectionState: ConnectionState = "connecting";
+let modules: Modules | null = null;
+let modulesAt = 0;
+let guidance: Guidance | null = null;
+let shownOrder: Guidance | null = null;
 let imageAt = 0;
 
 /** Null where the browser has no WebGL: all else works without. */
@@ -47,6 +46,41 @@ async function showImage(frame: ImageFrame): Promise<void> {
   } finally {
     connection.send({ shown: "image" });
   }
+}
+
+/** What is told of the session's health holds for all else on the page. */
+function showHealth(): void {
+  const health = healthView(connectionState, modules, performance.now() - modulesAt);
+  byId("connection").dataset.state = health.state;
+  setText("connection", health.headline);
+  showFaults(health.faults);
+  actions.setLive(connectionState === "live", health.mayOrder);
+  showOrder(health.mayOrder ? guidance : null);
+  if (!health.mayOrder) showNoGuidance(health.instead);
+  for (const stream of ["camera", "lidar"] as const) showFlow(stream, health.flows);
+  const age = performance.now() - imageAt;
+  byId("stale").hidden = imageAt > 0 && age < STALE_MS && health.flows.camera !== "silent";
+  setText("stale", imageAt === 0 ? "No image yet" : `No image for ${Math.round(age / 1000)} s`);
+}
+
+/** Null: nothing would come of one. */
+function showOrder(order: Guidance | null): void {
+  if (order === shownOrder) return;
+  shownOrder = order;
+  if (order) showGuidance(order);
+  image.showGuidance(order);
+  scene?.showGuidance(order);
+  actions.setEnough(order?.is_enough ?? false);
+}
+
+/** What is stale looks stale: its picture is grey, and its board no longer "found". */
+function showFlow(sensor: "camera" | "lidar", flows: HealthView["flows"]): void {
+  byId(`${sensor === "camera" ? "image" : "scene"}-panel`).dataset.flow = flows[sensor];
+  const flow = flows[sensor] === "flows" ? flows[`${sensor}_board`] : flows[sensor];
+  byId(`${sensor}-state`).dataset.flow = flow;
+  const isOver = flow === "silent" || flow === "ended";
+  setText(`${sensor}-flow`, isOver ? `${flow}; before: ` : "");
+  if (sensor === "camera" && flow !== "flows") image.forgetBoard();
 }
 
 function showCameraBoard(board: CameraBoard): void {
@@ -91,16 +125,18 @@ function take(message: Message): void {
       showResult(message);
       break;
     case "guidance":
-      showGuidance(message);
-      image.showGuidance(message);
-      scene?.showGuidance(message);
+      guidance = message;
+      showHealth();
       break;
     case "events":
       showEvents(message);
       actions.takeEvents(message);
       break;
     case "modules":
+      modules = message;
+      modulesAt = performance.now();
       showModules(message);
+      showHealth();
       break;
     case "refused":
       actions.say(`Refused: ${message.reason}`);
@@ -108,10 +144,6 @@ function take(message: Message): void {
   }
 }
 
-setInterval(() => {
-  const age = performance.now() - imageAt;
-  byId("stale").hidden = imageAt > 0 && age < STALE_MS;
-  setText("stale", imageAt === 0 ? "No image yet" : `No image for ${Math.round(age / 1000)} s`);
-}, 500);
+setInterval(showHealth, 500);
 byId("look-along").addEventListener("click", () => scene?.lookAlong());
 connection.open();

@@ -1,13 +1,29 @@
 // The parts of the page that are text: guidance, estimate, samples, rejects, modules.
 
 import { byId, element, number, setText } from "./dom.ts";
-import type { Check, Events, Guidance, Modules, Result, Sample, Samples } from "./protocol.ts";
+import type { Check, Events, Fault, Guidance, Modules, Result, Sample, Samples } from "./protocol.ts";
+
+/** Says what there is instead of an order, where nothing would come of one. */
+export function showNoGuidance(instead: string): void {
+  setText("advice", instead);
+  setText("advice-why", "");
+  byId("guidance").dataset.state = "halted";
+  byId("enough-meter").hidden = byId("near-meter").hidden = true;
+}
+
+/** Full where the board is as it is asked to be, empty from a metre on. */
+function showNearness({ away_m, is_enough }: Guidance): void {
+  const meter = byId<HTMLMeterElement>("near-meter");
+  meter.hidden = is_enough || away_m === null;
+  meter.value = 1 - Math.min(1, away_m ?? 1);
+}
 
 export function showGuidance(guidance: Guidance): void {
   const { unit, tolerance, min_range_m, max_range_m, worst_error, predicted_worst_error, min_samples } = guidance;
   const advice = guidance.advice || guidance.problem;
-  setText("advice", advice.charAt(0).toUpperCase() + advice.slice(1));
+  setText("advice", sentence(advice));
   byId("guidance").dataset.state = guidance.is_enough ? "enough" : "more";
+  showNearness(guidance);
   const where = `between ${min_range_m} and ${max_range_m} m`;
   const known = worst_error !== null;
   const now = known
@@ -17,7 +33,7 @@ export function showGuidance(guidance: Guidance): void {
   const next = guidance.is_enough || predicted_worst_error === null || !known
     ? ""
     : ` One more sample there: ${number(predicted_worst_error, 1, unit)}.`;
-  setText("advice-why", guidance.problem || guidance.is_enough ? "" : now + next);
+  setText("advice-why", guidance.problem || guidance.is_enough ? "" : `Left and right are the image's. ${now}${next}`);
   const meter = byId<HTMLProgressElement>("enough-meter");
   meter.hidden = !known;
   meter.value = known ? Math.min(1, tolerance / Math.max(worst_error, tolerance, 1e-9)) : 0;
@@ -47,7 +63,9 @@ export function showResult(result: Result): void {
   );
   setText("made-from", `${result.num_samples} samples, by ${result.method}${result.is_current ? "" : "; being renewed"}`);
   const isGood = (check: Check) => check.grade === "good";
-  byId("marked").replaceChildren(...verdict.checks.filter((check) => !isGood(check)).map(checkItem));
+  const isBad = (check: Check) => check.grade === "bad";
+  const marked = verdict.checks.filter((check) => !isGood(check));
+  byId("marked").replaceChildren(...[...marked.filter(isBad), ...marked.filter((check) => !isBad(check))].map(checkItem));
   byId("checks").replaceChildren(...verdict.checks.filter(isGood).map(checkItem));
 }
 
@@ -81,7 +99,7 @@ function facing(degrees: number, positive: string, negative: string): string {
 
 export function showSamples({ samples, is_finished }: Samples, discard: (id: number) => void): void {
   setText("sample-count", `${samples.length}`);
-  setText("finished", is_finished ? "Finished. Capture goes on with it." : "");
+  setText("finished", is_finished ? "Finished: no more is taken. Capture goes on." : "");
   byId("no-samples").hidden = samples.length > 0;
   const list = byId("samples");
   const known = new Map([...list.children].map((item) => [(item as HTMLElement).dataset.sample, item as HTMLElement]));
@@ -150,15 +168,46 @@ export function showEvents({ events }: Events): void {
 }
 
 export function showModules({ modules }: Modules): void {
-  const bad = modules.filter((module) => module.health !== "good" || module.num_lost > 0);
-  const ended = modules.filter((module) => module.state === "done").map((module) => module.name);
-  const good = ended.length === 0 ? `All ${modules.length} modules run` : `All is well; ${ended.join(", ")} finished`;
-  setText("modules-summary", bad.length === 0 ? good : bad.map((module) =>
-    module.health === "good" ? `${module.name} lost ${module.num_lost} messages` : `${module.name} is ${module.health}`).join("; "));
+  const bad = modules.filter(({ health }) => health === "silent" || health === "failed");
+  const ended = modules.filter(({ health }) => health === "ended").map(({ name }) => name);
+  const good = ended.length === 0 ? `All ${modules.length} modules run` : `${ended.join(", ")} ended, the others run`;
+  setText("modules-summary", bad.length === 0 ? good : bad.map(({ name, health }) => `${name}: ${health}`).join("; "));
   byId("modules-panel").dataset.state = bad.length === 0 ? "good" : "bad";
   byId("modules").replaceChildren(
     ...modules.map((module) =>
       element("li", { "data-health": module.health }, element("b", {}, module.name), ` ${module.state}`),
     ),
+  );
+}
+
+/** Faults stand first on the page. What did not change is left alone, for who selects its text or hears it read. */
+export function showFaults(faults: Fault[]): void {
+  const panel = byId("faults");
+  panel.hidden = faults.length === 0;
+  const list = byId("fault-list");
+  faults.forEach((fault, i) => {
+    const item = list.children[i] ?? list.appendChild(faultItem());
+    (item as HTMLElement).dataset.grave = `${fault.is_grave}`;
+    const [what, cause, remedy] = item.children as unknown as HTMLElement[];
+    const put = (part: HTMLElement, text: string) => part.textContent !== text && (part.textContent = text);
+    put(what!, sentence(fault.what));
+    put(cause!, sentence(fault.cause));
+    put(remedy!, sentence(fault.remedy));
+  });
+  while (list.children.length > faults.length) list.lastElementChild!.remove();
+}
+
+/** Names of modules keep their small letter. */
+function sentence(text: string): string {
+  return /^[a-z]+[_-]/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+function faultItem(): HTMLElement {
+  return element(
+    "li",
+    {},
+    element("strong", {}),
+    element("p", { class: "cause" }),
+    element("p", { class: "remedy" }),
   );
 }

@@ -65,6 +65,8 @@ export interface Guidance {
   kind: "guidance";
   problem: string;
   advice: string;
+  /** The board's corners from where they are asked to be; null while the board is not seen. */
+  away_m: number | null;
   unit: string;
   tolerance: number;
   min_range_m: number;
@@ -84,7 +86,22 @@ export interface Events {
 
 export interface Modules {
   kind: "modules";
-  modules: { name: string; state: string; health: "good" | "silent" | "failed"; num_lost: number }[];
+  beat: number;
+  modules: { name: string; state: string; health: "good" | "ended" | "silent" | "failed" }[];
+  faults: Fault[];
+  flows: Record<StreamName, Flow>;
+}
+
+/** What samples are made of. */
+export type StreamName = "lidar" | "camera" | "lidar_board" | "camera_board";
+export type Flow = "nothing yet" | "flows" | "silent" | "ended";
+
+export interface Fault {
+  of: string;
+  what: string;
+  cause: string;
+  remedy: string;
+  is_grave: boolean;
 }
 
 export interface LidarBoard {

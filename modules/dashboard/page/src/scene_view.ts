@@ -86,8 +86,9 @@ export class SceneView {
     );
   }
 
-  showGuidance(guidance: Guidance): void {
-    const corners = guidance.is_enough ? undefined : guidance.corners_lidar_m;
+  /** Null: no order is given. */
+  showGuidance(guidance: Guidance | null): void {
+    const corners = guidance?.is_enough ? undefined : guidance?.corners_lidar_m;
     this.replace(this.ghost, corners ? [plate(corners, "#ffd60a", 0.35), outline(corners, "#ffd60a")] : []);
   }
 

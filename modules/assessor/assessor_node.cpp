@@ -59,6 +59,22 @@ ChosenSamples ChosenOf(const samples_t& samples, const extrinsic_averaged_t& ave
   return chosen;
 }
 
+/// A report of an earlier result, or of none, would be taken for one of this.
+void RemoveReport(const std::filesystem::path& session_folder) {
+  std::error_code error;
+  for (const char* name : {"report.html", "result.json"}) {
+    std::filesystem::remove(session_folder / name, error);
+  }
+}
+
+/// The same result again, of an assessor that was started again, keeps its report.
+void WriteResult(const std::filesystem::path& session_folder, const std::string& yaml) {
+  const std::filesystem::path file = session_folder / kResultName;
+  if (std::filesystem::exists(file) && ReadWholeFile(file) == yaml) return;
+  RemoveReport(session_folder);
+  WriteFileAtomically(file, yaml);
+}
+
 }  // namespace
 
 AssessorNode::AssessorNode(const Rig& rig,
@@ -111,11 +127,12 @@ void AssessorNode::UpdateAssessment() {
   if (assessment.problem.empty()) {
     result_ = Result();
     Fill(*result_, &assessment);
-    WriteFileAtomically(session_folder_ / kResultName, ToYaml(*result_));
+    WriteResult(session_folder_, ToYaml(*result_));
   } else {
     // An earlier result is not that of these samples (after a reset, say).
     std::error_code error;
     std::filesystem::remove(session_folder_ / kResultName, error);
+    RemoveReport(session_folder_);
   }
   assessment_ = std::move(assessment);
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/run_program.hpp"
 #include "common/tool_main.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/made_from.hpp"
@@ -32,8 +33,12 @@ constexpr std::chrono::seconds kSayFinishAgain{1};
 
 constexpr char kNoAnswer[] = "the sample collector did not answer: is the rig running?";
 
+/// For a result, where none is given: what run_rig takes.
+constexpr double kWaitForResultS = 60;
+
 struct CommandArgs {
   std::filesystem::path rig;
+  std::filesystem::path session;
   std::optional<std::string> lcm_url;
   std::string command;
   std::int64_t sample_id = 0;
@@ -106,6 +111,16 @@ void SendAndTellOutcome(const CommandArgs& args, const Rig& rig, Bus* bus) {
       "; the next frames that show the board to both sensors will be one");
 }
 
+/// What the live modules found, as a page to look at.
+void WriteReport(const CommandArgs& args) {
+  const std::string result = (args.session / "extrinsic.yaml").string();
+  std::printf("result   %s\n", result.c_str());
+  std::fflush(stdout);
+  const std::string problem = RunProgram(
+      {FileBesidePrograms("bin/report"), args.session.string(), "--rig", args.rig.string()});
+  if (!problem.empty()) std::fprintf(stderr, "command: no report: %s\n", problem.c_str());
+}
+
 // Until the collector says "finished" and the assessor has judged that very set of samples. The
 // command is sent again each second: it may have been lost.
 void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
@@ -133,12 +148,24 @@ void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
   }
   if (!assessment.problem.empty())
     throw std::runtime_error("no calibration: " + assessment.problem);
-  std::printf("%d samples, held-out centre error %.2f mm mean\n",
+  std::printf("verdict  %s\n%d samples, held-out centre error %.2f mm mean\n",
+              assessment.verdict_headline.c_str(),
               assessment.num_samples,
               assessment.refined_held_out.centre_mm.mean);
+  if (!args.session.empty()) WriteReport(args);
+  if (assessment.verdict_grade == "bad") throw DemandNotMet(assessment.verdict_headline);
 }
 
-void Command(const CommandArgs& args) {
+/// What a session's folder tells: its rig, and that a result is waited for.
+CommandArgs WithSession(CommandArgs args) {
+  if (args.session.empty()) return args;
+  if (args.rig.empty()) args.rig = args.session / "rig.yaml";
+  if (args.wait_s == 0) args.wait_s = kWaitForResultS;
+  return args;
+}
+
+void Command(const CommandArgs& given) {
+  const CommandArgs args = WithSession(given);
   const Rig rig = LoadRig(args.rig);
   Bus bus(args.lcm_url.value_or(rig.lcm_url));
   if (args.command == "finish" && args.wait_s > 0) {
@@ -154,8 +181,7 @@ void Command(const CommandArgs& args) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Sends one command to the sample collector of a running rig, and says what came of it; "
-      "status 1 "
-      "if nothing did.",
+      "status 1 if nothing did, 3 if it is a result whose verdict is \"do not use\".",
       "command");
   voqcal::CommandArgs args;
   app.add_option("command",
@@ -168,7 +194,14 @@ int main(int argc, char** argv) {
   app.add_option(
          "--wait", args.wait_s, "After finish: wait for the result, at most this many seconds")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--rig", args.rig, "The rig file (YAML)")->required();
+  auto* which = app.add_option_group("which", "At least one of:")->require_option(1, 2);
+  which
+      ->add_option(
+          "--session",
+          args.session,
+          "The session's folder: its rig; finish waits for the result and makes report.html")
+      ->check(CLI::ExistingDirectory);
+  which->add_option("--rig", args.rig, "The rig file (YAML), instead of the session's");
   app.add_option("--lcm-url", args.lcm_url, "Instead of the rig file's");
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::Command(args); });
 }

@@ -84,6 +84,15 @@ TEST_F(AssessorNodeTest, TakesTheResultAwayWithItsSamples) {
   EXPECT_FALSE(std::filesystem::exists(file_));
 }
 
+TEST_F(AssessorNodeTest, TakesTheReportOfAnEarlierResultAway) {
+  RunStagesBefore(test::NoisySamples(8), 8);
+  Step(&node_);
+  WriteFileAtomically(session_ / "report.html", "of these samples");
+  RunStagesBefore(test::NoisySamples(7), 9);
+  Step(&node_);
+  EXPECT_FALSE(std::filesystem::exists(session_ / "report.html"));
+}
+
 TEST_F(AssessorNodeTest, HeldOutScoresAreWorseThanInSample) {
   RunStagesBefore(test::NoisySamples(30), 30);
   Step(&node_);

@@ -19,7 +19,7 @@ constexpr double kUsualGaps = 3.0;
 constexpr std::int64_t kStartBeats = 5;
 // Two heartbeats of what ran before; what was only just started may have much to load.
 constexpr double kHeardWithinS = 2.0;
-constexpr std::time_t kLoadedWithinS = 8;
+constexpr std::time_t kLoadedWithinS = 20;
 constexpr double kLossIsNewsS = 10.0;
 // Every heartbeat is recorded.
 constexpr double kRecordingSilenceS = 2.0;

@@ -87,9 +87,10 @@ SceneScore JointHeldOut(const std::vector<const BoardSample*>& samples,
     if (!others.likelihood.IsUsable()) {
       return ScorePose(sample, camera, joint.Without(T_reprojection, T_reprojection));
     }
-    return ScorePose(CorrectedSample(sample, others.likelihood.bias),
-                     camera,
-                     joint.Without(T_reprojection, others.likelihood.T_camera_lidar));
+    const Eigen::Isometry3d T_camera_lidar =
+        joint.Without(T_reprojection, others.likelihood.T_camera_lidar);
+    const LidarBias bias = others.likelihood.BiasAt(T_camera_lidar);
+    return ScorePose(CorrectedSample(sample, bias), camera, T_camera_lidar);
   });
 }
 
@@ -165,8 +166,9 @@ std::vector<std::string> RefinerOptions::Problems() const {
 }
 
 LidarBias BestExtrinsic::Bias() const {
-  const bool has_bias = method == RefineMethod::kLikelihood || method == RefineMethod::kJoint;
-  return has_bias ? likelihood.bias : LidarBias{};
+  if (method == RefineMethod::kLikelihood) return likelihood.bias;
+  const bool is_joint = method == RefineMethod::kJoint && likelihood.IsUsable();
+  return is_joint ? likelihood.BiasAt(T_camera_lidar) : LidarBias{};
 }
 
 BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias) {

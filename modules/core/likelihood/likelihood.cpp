@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include "core/likelihood/likelihood_search.hpp"
 #include "core/likelihood/likelihood_uncertainty.hpp"
 #include "core/problems.hpp"
@@ -32,6 +34,19 @@ LidarBias BiasOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covarian
     bias.rings.push_back(estimate(kFirstRing + i));
   }
   return bias;
+}
+
+// The expectation of the faults, given the extrinsic (of a normal distribution).
+Eigen::Matrix<double, Eigen::Dynamic, 6> FaultsByExtrinsic(const LikelihoodSearch& search,
+                                                           const Eigen::MatrixXd& covariance) {
+  const Matrix6d of_extrinsic = covariance.topLeftCorner<6, 6>();
+  const Eigen::Index num_faults = kFirstRing + search.state().NumRings();
+  Eigen::Matrix<double, Eigen::Dynamic, 6> by_extrinsic =
+      covariance.block(kExtrinsicSize, 0, num_faults, kExtrinsicSize) * of_extrinsic.inverse();
+  for (Eigen::Index i = 0; i < num_faults; ++i) {
+    if (!search.IsFree(i)) by_extrinsic.row(i).setZero();
+  }
+  return by_extrinsic;
 }
 
 LensEstimate LensOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covariance) {
@@ -126,6 +141,8 @@ LikelihoodExtrinsic RefinePoses(std::vector<LikelihoodPose> poses,
   refined.uncertainty = UncertaintyOf(search, equations, camera, options);
   refined.bias = BiasOf(search, covariance);
   refined.bias.shades = shades;
+  refined.faults_m = search.state().faults_m.head(kFirstRing + search.state().NumRings());
+  refined.faults_by_extrinsic = FaultsByExtrinsic(search, covariance);
   refined.lens = LensOf(search, covariance);
   refined.noise = search.noise();
   AddResiduals(search, &refined);
@@ -146,15 +163,9 @@ LikelihoodExtrinsic RefinePosesNearby(std::vector<LikelihoodPose> poses,
   if (!search.IsPhysical()) return refined;
   const LikelihoodState& state = search.state();
   refined.T_camera_lidar = state.T_camera_lidar;
-  refined.bias.common.value_m = state.faults_m[kCommon];
-  refined.bias.dark_step.value_m = state.faults_m[kDarkStep];
-  refined.bias.outline_lift.value_m = state.faults_m[kLift];
-  refined.bias.outline_rise.value_m = state.faults_m[kRise];
-  const auto num_rings =
-      std::min(state.NumRings(), static_cast<Eigen::Index>(nearby.bias.rings.size()));
-  for (Eigen::Index i = 0; i < num_rings; ++i) {
-    refined.bias.rings[static_cast<std::size_t>(i)].value_m = state.faults_m[kFirstRing + i];
-  }
+  const Eigen::Index num_faults = kFirstRing + state.NumRings();
+  refined.faults_m.head(num_faults) = state.faults_m.head(num_faults);
+  SetFaults(refined.faults_m, &refined.bias);
   if (state.num_lens > 0) refined.lens.errors = state.faults_m.tail(state.num_lens);
   refined.status = RefineStatus::kConverged;
   return refined;

@@ -2,12 +2,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <sstream>
+
+#include "core/likelihood/likelihood_equations.hpp"
 
 namespace voqcal {
 
+void SetFaults(const Eigen::VectorXd& faults_m, LidarBias* bias) {
+  bias->common.value_m = faults_m[kCommon];
+  bias->dark_step.value_m = faults_m[kDarkStep];
+  bias->outline_lift.value_m = faults_m[kLift];
+  bias->outline_rise.value_m = faults_m[kRise];
+  for (std::size_t i = 0; i < bias->rings.size(); ++i) {
+    const Eigen::Index fault = kFirstRing + static_cast<Eigen::Index>(i);
+    if (fault < faults_m.size()) bias->rings[i].value_m = faults_m[fault];
+  }
+}
+
 bool LensEstimate::IsObservable() const {
   return std::find(is_observable.begin(), is_observable.end(), true) != is_observable.end();
+}
+
+LidarBias LikelihoodExtrinsic::BiasAt(const Eigen::Isometry3d& T_camera_lidar_given) const {
+  const Eigen::VectorXd moves_m =
+      faults_by_extrinsic * DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
+  LidarBias moved = bias;
+  SetFaults(faults_m + moves_m, &moved);
+  return moved;
 }
 
 std::string LikelihoodExtrinsic::Summary() const {

@@ -48,6 +48,9 @@ struct LikelihoodExtrinsic {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
   LikelihoodUncertainty uncertainty;
   LidarBias bias;
+  Eigen::VectorXd faults_m;  ///< The bias, in the order of LikelihoodState.
+  /// How they follow where the extrinsic is given, by its [rotation_rad; translation_m] on the left.
+  Eigen::Matrix<double, Eigen::Dynamic, 6> faults_by_extrinsic;
   LensEstimate lens;  ///< RefineWithLens'; the extrinsic then goes with the corrected camera.
   LikelihoodNoise noise;
   double range_rms_m = std::numeric_limits<double>::quiet_NaN();   ///< Of all returns.
@@ -56,7 +59,12 @@ struct LikelihoodExtrinsic {
   RefineStatus status = RefineStatus::kNotConverged;
 
   bool IsUsable() const { return status == RefineStatus::kConverged; }
+  /// The most likely bias if that is the extrinsic; to first order.
+  LidarBias BiasAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
   std::string Summary() const;  ///< One line for a log.
 };
+
+/// Puts the faults' values into `bias`; which of them are observable, and how well, stays.
+void SetFaults(const Eigen::VectorXd& faults_m, LidarBias* bias);
 
 }  // namespace voqcal

@@ -49,7 +49,7 @@ struct LikelihoodExtrinsic {
   LikelihoodUncertainty uncertainty;
   LidarBias bias;
   Eigen::VectorXd faults_m;  ///< The bias, in the order of LikelihoodState.
-  /// How they follow where the extrinsic is given, by its [rotation_rad; translation_m] on the left.
+  /// How they follow a given extrinsic: by [rotation_rad; translation_m], left side.
   Eigen::Matrix<double, Eigen::Dynamic, 6> faults_by_extrinsic;
   LensEstimate lens;  ///< RefineWithLens'; the extrinsic then goes with the corrected camera.
   LikelihoodNoise noise;

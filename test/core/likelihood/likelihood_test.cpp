@@ -98,6 +98,17 @@ TEST(LikelihoodTerms, OutlineResidualSeesALiftedOutline) {
   EXPECT_LT(OutlineResidual(at, outline, 0.002, nullptr).norm(), 1e-5);
 }
 
+// Boards that the extrinsic puts 10 mm farther agree with the chessboards if ranges are as much too
+// long; the boards stand within 30 degrees of the camera's z.
+TEST(RefineByLikelihood, BiasFollowsAGivenExtrinsic) {
+  const LikelihoodExtrinsic refined = RefineFaulty(1);
+  ASSERT_TRUE(refined.IsUsable());
+  const double common_m = refined.bias.common.value_m;
+  EXPECT_EQ(refined.BiasAt(refined.T_camera_lidar).common.value_m, common_m);
+  const Eigen::Isometry3d farther = PerturbLeft(refined.T_camera_lidar, 0.01 * Vector6d::Unit(5));
+  EXPECT_NEAR(refined.BiasAt(farther).common.value_m - common_m, 0.01, 0.002);
+}
+
 TEST(RefineByLikelihood, FindsHowMuchHigherOutlinesLook) {
   test::LidarFaults faults;
   faults.noise_m = 0.005;

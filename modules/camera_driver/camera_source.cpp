@@ -12,6 +12,7 @@
 #include "images/encoded_image.hpp"
 #include "images/jpeg.hpp"
 #include "rig/frame_folder.hpp"
+#include "rig/frame_pairing.hpp"
 
 namespace voqcal {
 namespace {
@@ -19,8 +20,7 @@ namespace {
 // The files' bytes are passed on as they are: PNG stays lossless, JPEG is not compressed twice.
 class FolderCameraSource : public CameraSource {
  public:
-  explicit FolderCameraSource(const FrameOptions& options)
-      : folder_(options, {".png", ".jpg", ".jpeg"}) {}
+  explicit FolderCameraSource(const FrameOptions& options) : folder_(options, kImageEndings) {}
 
   std::optional<TimedImage> Next() override {
     auto image = folder_.NextReadable(Read);
@@ -76,6 +76,7 @@ std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig, Bus* bus) {
   switch (rig.camera_driver.source) {
     case CameraDriverOptions::Source::kFolder:
       RequireFolder(rig.camera_driver, rig.path.string() + ": camera_driver");
+      AnnouncePairing(rig);
       return std::make_unique<FolderCameraSource>(rig.camera_driver);
     case CameraDriverOptions::Source::kSimulator:
       if (rig.simulation.follows_guidance) return std::make_unique<GuidedCameraSource>(rig, bus);

@@ -13,6 +13,7 @@
 #include "core/units.hpp"
 #include "files/nearest_word.hpp"
 #include "files/number_text.hpp"
+#include "files/yaml_hint.hpp"
 
 namespace voqcal {
 namespace {
@@ -113,8 +114,9 @@ YAML::Node ParseDocument(const std::string& name, const std::string& text) {
     const YAML::Node document = YAML::Load(text);
     if (document.IsMap() && !HasMoreThanOneDocument(text)) return document;
   } catch (const YAML::Exception& error) {
-    throw std::runtime_error(name + ":" + std::to_string(error.mark.line + 1) +
-                             ": is not YAML: " + error.msg);
+    const YamlHint hint =
+        FindYamlHint(text).value_or(YamlHint{error.mark.line + 1, "is not YAML: " + error.msg});
+    throw std::runtime_error(name + ":" + std::to_string(hint.line) + ": " + hint.text);
   }
   throw std::runtime_error(name + ":1: must be one mapping of keys to values" +
                            (text.empty() ? ", is empty" : ""));

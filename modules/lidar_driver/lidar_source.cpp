@@ -10,13 +10,14 @@
 #include "lidar_driver/guided_lidar_source.hpp"
 #include "lidar_driver/packet_lidar_source.hpp"
 #include "rig/frame_folder.hpp"
+#include "rig/frame_pairing.hpp"
 
 namespace voqcal {
 namespace {
 
 class FolderLidarSource : public LidarSource {
  public:
-  explicit FolderLidarSource(const FrameOptions& options) : folder_(options, {".pcd", ".ply"}) {}
+  explicit FolderLidarSource(const FrameOptions& options) : folder_(options, kCloudEndings) {}
 
   std::optional<TimedCloud> Next() override {
     auto cloud = folder_.NextReadable([](const FrameFile& file) {
@@ -61,6 +62,7 @@ std::unique_ptr<LidarSource> MakeLidarSource(const Rig& rig, PacketListener on_p
   switch (rig.lidar_driver.source) {
     case LidarDriverOptions::Source::kFolder:
       RequireFolder(rig.lidar_driver, rig.path.string() + ": lidar_driver");
+      AnnouncePairing(rig);
       return std::make_unique<FolderLidarSource>(rig.lidar_driver);
     case LidarDriverOptions::Source::kSimulator:
       if (rig.simulation.follows_guidance) return std::make_unique<GuidedLidarSource>(rig, bus);

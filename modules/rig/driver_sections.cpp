@@ -30,6 +30,12 @@ void ReadFrameOptions(const std::filesystem::path& rig_path,
   section->Read("file_ending", &options->file_ending);
   section->Read("rate_hz", &options->rate_hz);
   section->Read("is_repeating", &options->is_repeating);
+  std::string frames_by = "names";
+  section->Read("frames_by", &frames_by);
+  if (frames_by != "names" && frames_by != "order") {
+    section->AddError("frames_by", "must be names or order");
+  }
+  options->is_by_order = frames_by == "order";
 }
 
 /// A lidar's source is one of its own, or a lidar by its protocol's name.

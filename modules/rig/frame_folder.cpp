@@ -85,9 +85,7 @@ void RequireFolder(const FrameOptions& options, const std::string& where) {
   }
 }
 
-FrameFolder::FrameFolder(const FrameOptions& options,
-                         const std::vector<std::string>& extensions,
-                         bool are_places)
+FrameFolder::FrameFolder(const FrameOptions& options, const std::vector<std::string>& extensions)
     : naming_(FrameNaming::kPlaces), is_repeating_(options.is_repeating) {
   std::vector<std::filesystem::path> paths = FilesInNaturalOrder(options.folder, extensions);
   const auto is_other = [&options](const std::filesystem::path& path) {
@@ -100,9 +98,9 @@ FrameFolder::FrameFolder(const FrameOptions& options,
   }
   const std::vector<std::int64_t> times = Rising(paths, FrameTime);
   const std::vector<std::int64_t> numbers = Rising(paths, FrameNumber);
-  if (!are_places && !times.empty())
+  if (!options.is_by_order && !times.empty())
     naming_ = FrameNaming::kTimes;
-  else if (!are_places && !numbers.empty())
+  else if (!options.is_by_order && !numbers.empty())
     naming_ = FrameNaming::kNumbers;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const std::int64_t number =

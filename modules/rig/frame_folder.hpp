@@ -17,6 +17,10 @@ struct FrameFile {
   std::int64_t utime = 0;
 };
 
+/// What files are frames, by the endings of their names.
+inline const std::vector<std::string> kCloudEndings = {".pcd", ".ply"};
+inline const std::vector<std::string> kImageEndings = {".png", ".jpg", ".jpeg"};
+
 /// How the files of a folder tell which frames they are.
 enum class FrameNaming {
   kNumbers,  ///< pose10.png: frame 10.
@@ -39,14 +43,11 @@ void RequireFolder(const FrameOptions& options, const std::string& where);
 /// The files of a driver's folder as frames. Frame number n stands for kSyntheticEpochUtime + n /
 /// rate_hz, so that pose10.png and pose10_full.pcd are of the same instant although other poses may
 /// be missing; names that are times stand for these. Where a name has neither, or two names have
-/// the same, n is the file's place.
+/// the same, or the options say so, n is the file's place.
 class FrameFolder {
  public:
-  /// @param are_places  n is the file's place, whatever the names say.
   /// @throws std::runtime_error naming the folder if it is missing or has no such file.
-  FrameFolder(const FrameOptions& options,
-              const std::vector<std::string>& extensions,
-              bool are_places = false);
+  FrameFolder(const FrameOptions& options, const std::vector<std::string>& extensions);
 
   /// The next file in natural order; nothing after the last, unless the options repeat.
   std::optional<FrameFile> Next();

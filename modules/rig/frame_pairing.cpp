@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <spdlog/spdlog.h>
 
 namespace voqcal {
 namespace {
@@ -31,7 +36,18 @@ std::string ToString(FrameNaming naming) {
       " clouds from " + NameOf(cloud) + ", " + std::to_string(images.size()) + " images from " +
       NameOf(image) +
       "): give a cloud and its image the same number; or, if the first belong together, the second "
-      "and so on, say --pair order");
+      "and so on, say so: frames_by: order under both drivers in the rig file, or --pair order");
+}
+
+/// Nothing if it is not there or empty, which is for its own driver to say.
+std::optional<FrameFolder> FolderWithFrames(const FrameOptions& options,
+                                            const std::vector<std::string>& endings) {
+  if (options.folder.empty()) return {};
+  try {
+    return FrameFolder(options, endings);
+  } catch (const std::runtime_error&) {
+    return {};
+  }
 }
 
 /// How many clouds have an image within the offset.
@@ -77,6 +93,21 @@ std::string PairingOf(const FrameFolder& clouds, const FrameFolder& images, doub
   if (num_pairs == 0) Refuse(clouds, images, "no cloud has the number or time of an image");
   return std::to_string(num_pairs) + " pairs, by " +
          (are_places ? "their order" : "the " + ToString(clouds.naming()) + " of their names");
+}
+
+std::string PairingOfDrivers(const Rig& rig) {
+  const bool are_folders = rig.lidar_driver.source == LidarDriverOptions::Source::kFolder &&
+                           rig.camera_driver.source == CameraDriverOptions::Source::kFolder;
+  if (!are_folders) return "";
+  const auto clouds = FolderWithFrames(rig.lidar_driver, kCloudEndings);
+  const auto images = FolderWithFrames(rig.camera_driver, kImageEndings);
+  if (!clouds || !images) return "";
+  return PairingOf(*clouds, *images, rig.sample_collector.max_pair_offset_s);
+}
+
+void AnnouncePairing(const Rig& rig) {
+  const std::string pairing = PairingOfDrivers(rig);
+  if (!pairing.empty()) spdlog::info("clouds and images: {}", pairing);
 }
 
 }  // namespace voqcal

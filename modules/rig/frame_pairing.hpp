@@ -14,4 +14,12 @@ namespace voqcal {
 ///     kinds.
 std::string PairingOf(const FrameFolder& clouds, const FrameFolder& images, double max_offset_s);
 
+/// The same of the folders of a rig's two drivers; empty unless both have one with frames.
+///
+/// @throws std::runtime_error as PairingOf.
+std::string PairingOfDrivers(const Rig& rig);
+
+/// Logs it, before a driver begins. @throws as PairingOfDrivers.
+void AnnouncePairing(const Rig& rig);
+
 }  // namespace voqcal

@@ -60,6 +60,7 @@ struct FrameOptions {
   std::string file_ending;       ///< For kFolder: only names that end so ("_full.pcd"); empty: all.
   double rate_hz = 10.0;         ///< Frames a second, of a folder or the simulator.
   bool is_repeating = false;     ///< For kFolder: starts again after the last file.
+  bool is_by_order = false;      ///< For kFolder: frames are the first, the second, ... file.
 };
 
 /// Where the lidar driver's sweeps come from.

@@ -251,6 +251,17 @@ TEST_F(BadInput, OutputThatCannotBeWrittenIsNamedWithTheCause) {
   }
 }
 
+TEST_F(BadInput, RigFileThatCanHardlyBeRight) {
+  folder_.Write("rig.yaml", test::Replaced(kRigText, "width_m: 0.6", "width_m: 600"));
+  const test::Outcome outcome = test::Run({test::Program("check_rig"), rig_});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err,
+              AllOf(StartsWith("check_rig: " + rig_),
+                    HasSubstr("board.width_m is 600: it is in metres, and usually 0.1 to 5: in "
+                              "millimetres? Then give 0.6")));
+  EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr("is usable")));
+}
+
 TEST_F(BadInput, StandardOutputOnAFullDisk) {
   const test::Outcome outcome = test::Run(
       {"/bin/sh", "-c", "exec \"$0\" \"$1\" >/dev/full", test::Program("check_rig"), rig_});

@@ -20,6 +20,7 @@
 #include "messaging/log.hpp"
 #include "report/write_report.hpp"
 #include "rig/rig.hpp"
+#include "rig/rig_doubts.hpp"
 
 namespace voqcal {
 namespace {
@@ -79,6 +80,8 @@ void RequireVerdict(const Verdict& verdict, const std::string& demand) {
 
 void RunCalibrate(const CalibrateArgs& args) {
   const Rig rig = LoadRig(args.rig);
+  for (const std::string& doubt : BoardDoubts(rig.board)) spdlog::warn("{}", doubt);
+  for (const std::string& doubt : CameraDoubts(rig.camera)) spdlog::warn("{}", doubt);
   if (std::filesystem::exists(args.out) && !std::filesystem::is_directory(args.out)) {
     throw std::runtime_error(args.out.string() + ": is in the way: --out names a folder");
   }

@@ -6,7 +6,9 @@
 #include <string>
 
 #include "common/tool_main.hpp"
+#include "rig/frame_pairing.hpp"
 #include "rig/rig.hpp"
+#include "rig/rig_doubts.hpp"
 
 namespace voqcal {
 namespace {
@@ -36,7 +38,6 @@ std::string CameraSourceOf(const Rig& rig) {
 }
 
 void PrintRig(const Rig& rig) {
-  std::printf("%s: is usable\n", rig.path.c_str());
   std::printf("rig        %s\n", rig.name.c_str());
   std::printf("lcm_url    %s\n", rig.lcm_url.c_str());
   std::printf("board      %.3f x %.3f m, %d x %d inner corners of %.1f mm squares\n",
@@ -58,6 +59,17 @@ void PrintRig(const Rig& rig) {
               CameraSourceOf(rig).c_str());
 }
 
+/// @throws DemandNotMet with a line for each thing that is hardly meant so.
+void JudgeRig(const Rig& rig) {
+  std::string text;
+  for (const std::string& doubt : RigDoubts(rig)) text += '\n' + rig.path.string() + ": " + doubt;
+  if (!text.empty())
+    throw DemandNotMet(rig.path.string() + ": can be read, but hardly be right:" + text);
+  const std::string pairing = PairingOfDrivers(rig);
+  if (!pairing.empty()) std::printf("frames     %s\n", pairing.c_str());
+  std::printf("%s: is usable\n", rig.path.c_str());
+}
+
 // What calibrate reads of a recording, which also holds what the live modules made of it.
 void PrintInputChannels(const Channels& channels) {
   std::printf("(%s|%s|%s|%s)\n",
@@ -71,7 +83,10 @@ void PrintInputChannels(const Channels& channels) {
 }  // namespace voqcal
 
 int main(int argc, char** argv) {
-  CLI::App app("Checks a rig file as every module reads it, and says what it means.", "check_rig");
+  CLI::App app(
+      "Checks a rig file as every module reads it, and says what it means. Exit status: 0 if it is "
+      "usable, 1 if it is wrong, 3 if something in it can hardly be right.",
+      "check_rig");
   std::filesystem::path path;
   bool is_url_only = false;
   bool is_channels_only = false;
@@ -93,6 +108,7 @@ int main(int argc, char** argv) {
       voqcal::PrintInputChannels(rig.channels);
     } else {
       voqcal::PrintRig(rig);
+      voqcal::JudgeRig(rig);
     }
   });
 }

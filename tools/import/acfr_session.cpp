@@ -41,11 +41,12 @@ class EventWriter {
 
 FrameOptions FolderOptions(const std::filesystem::path& folder,
                            const std::string& file_ending,
-                           double rate_hz) {
+                           const AcfrImportOptions& import) {
   FrameOptions options;
   options.folder = folder;
   options.file_ending = file_ending;
-  options.rate_hz = rate_hz;
+  options.rate_hz = import.rate_hz;
+  options.is_by_order = import.is_paired_by_order;
   return options;
 }
 
@@ -77,12 +78,8 @@ struct Session {
   /// @throws std::runtime_error naming the folder that is missing or empty.
   Session(const std::filesystem::path& folder, const AcfrImportOptions& options)
       : name(folder.filename().string()),
-        clouds(FolderOptions(folder / "pcd", CloudEnding(folder / "pcd"), options.rate_hz),
-               {".pcd", ".ply"},
-               options.is_paired_by_order),
-        images(FolderOptions(folder / "images", "", options.rate_hz),
-               {".png", ".jpg", ".jpeg"},
-               options.is_paired_by_order) {}
+        clouds(FolderOptions(folder / "pcd", CloudEnding(folder / "pcd"), options), kCloudEndings),
+        images(FolderOptions(folder / "images", "", options), kImageEndings) {}
 
   std::string name;
   FrameFolder clouds;

@@ -12,18 +12,20 @@ using ::testing::HasSubstr;
 
 using Names = std::vector<std::string>;
 
-FrameFolder FolderOf(const test::TemporaryFolder& folder, const Names& names, bool are_places) {
+FrameFolder FolderOf(const test::TemporaryFolder& folder, const Names& names, bool is_by_order) {
   for (const std::string& name : names) folder.Write(name, "");
   FrameOptions options;
   options.folder = folder.path();
-  return {options, {".pcd", ".png"}, are_places};
+  options.is_by_order = is_by_order;
+  return {options, {".pcd", ".png"}};
 }
 
-std::string Pairing(const Names& clouds, const Names& images, bool are_places = false) {
+std::string Pairing(const Names& clouds, const Names& images, bool is_by_order = false) {
   const test::TemporaryFolder cloud_folder;
   const test::TemporaryFolder image_folder;
-  return PairingOf(
-      FolderOf(cloud_folder, clouds, are_places), FolderOf(image_folder, images, are_places), 0.06);
+  return PairingOf(FolderOf(cloud_folder, clouds, is_by_order),
+                   FolderOf(image_folder, images, is_by_order),
+                   0.06);
 }
 
 std::string Refusal(const Names& clouds, const Names& images) {

@@ -75,6 +75,13 @@ TEST(LoadRig, ResolvesFoldersFromItsOwn) {
   EXPECT_EQ(rig.camera_driver.folder, "/data/images");
 }
 
+TEST(LoadRig, ReadsByWhatFramesPair) {
+  EXPECT_FALSE(Load(Minimal()).lidar_driver.is_by_order);
+  EXPECT_TRUE(Load(Minimal() + "lidar_driver: {frames_by: order}\n").lidar_driver.is_by_order);
+  EXPECT_EQ(LoadError(Minimal() + "camera_driver: {frames_by: time}\n"),
+            "rig.yaml:5: camera_driver.frames_by must be names or order, is \"time\"");
+}
+
 TEST(LoadRig, ReadsABoxAndATransform) {
   const Rig rig = Load(Minimal() +
                        "lidar_board_detector: {region_of_interest: {min_lidar_m: [1, -2, -3], "
@@ -254,6 +261,10 @@ TEST(LoadRig, RefusesWhatIsNoRigFile) {
   EXPECT_EQ(LoadError("- a\n- b\n"), "rig.yaml:1: must be one mapping of keys to values");
   EXPECT_EQ(LoadError("a: 1\n---\nb: 2\n"), "rig.yaml:1: must be one mapping of keys to values");
   EXPECT_THAT(LoadError("rig: x\nboard: [1, 2\n"), StartsWith("rig.yaml:3: is not YAML: "));
+  EXPECT_EQ(LoadError("rig: x\nboard:\n\twidth_m: 0.6\n\theight_m: 0.8\n"),
+            "rig.yaml:3: is indented by a tab: give spaces");
+  EXPECT_EQ(LoadError("rig: x\nboard:\n  width_m:0.6\n  height_m: 0.8\n"),
+            "rig.yaml:3: lacks a space after its colon");
   EXPECT_THAT(LoadError(std::string("\x89PNG\r\n\x1a\n\0\0\xff\xfe", 12)), StartsWith("rig.yaml:"));
   const test::TemporaryFolder folder;
   EXPECT_THAT(test::ErrorOf([&] { LoadRig(folder.path() / "none.yaml"); }),

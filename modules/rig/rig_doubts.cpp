@@ -1,0 +1,244 @@
+#include "rig/rig_doubts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <system_error>
+
+#include "core/camera_detection/calibration_target.hpp"
+#include "core/format.hpp"
+#include "rig/frame_folder.hpp"
+#include "rig/frame_pairing.hpp"
+
+namespace voqcal {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+void Append(const Lines& more, Lines* lines) {
+  lines->insert(lines->end(), more.begin(), more.end());
+}
+
+// ---- The board ----
+
+/// What would make a length one between the limits.
+std::string OtherUnit(double value, double min_m, double max_m) {
+  const auto fits = [&](double value_m) { return value_m >= min_m && value_m <= max_m; };
+  if (fits(value / 1000)) return Format(": in millimetres? Then give %.6g", value / 1000);
+  if (fits(value / 100)) return Format(": in centimetres? Then give %.6g", value / 100);
+  return ": measure it, and give metres";
+}
+
+void DoubtLength(const char* key, double value_m, double min_m, double max_m, Lines* lines) {
+  if (value_m >= min_m && value_m <= max_m) return;
+  lines->push_back(Format("board.%s is %.6g: it is in metres, and usually %.4g to %.4g",
+                          key,
+                          value_m,
+                          min_m,
+                          max_m) +
+                   OtherUnit(value_m, min_m, max_m));
+}
+
+/// How far the pattern sticks out of the plate along an axis; negative if it does not.
+double Excess(const std::vector<double>& lines_m, double plate_m) {
+  return std::max(-lines_m.front(), lines_m.back()) - plate_m / 2;
+}
+
+bool IsPatternOnPlate(const BoardSpec& board) {
+  constexpr double kRoundingM = 0.001;
+  const PrintedPattern printed = TargetOf(board).print(board);
+  return Excess(printed.x_lines_m, board.width_m) < kRoundingM &&
+         Excess(printed.y_lines_m, board.height_m) < kRoundingM;
+}
+
+std::string WhyTooLarge(BoardSpec board) {
+  board.pattern_offset_x_m = board.pattern_offset_y_m = 0;
+  if (IsPatternOnPlate(board)) return "are pattern_offset_x_m and _y_m right?";
+  std::swap(board.width_m, board.height_m);
+  if (IsPatternOnPlate(board)) return "are x and y (or width_m and height_m) swapped?";
+  return "are corners counted, not squares, and is square_m right?";
+}
+
+void DoubtPattern(const BoardSpec& board, Lines* lines) {
+  if (IsPatternOnPlate(board)) return;
+  const PrintedPattern printed = TargetOf(board).print(board);
+  const auto span_m = [](const std::vector<double>& at_m) { return at_m.back() - at_m.front(); };
+  lines->push_back(
+      Format("board.square_m is %.6g: the pattern, %.4g x %.4g m, sticks out of the board, %.4g x "
+             "%.4g m (width x height): ",
+             board.square_m,
+             span_m(printed.x_lines_m),
+             span_m(printed.y_lines_m),
+             board.width_m,
+             board.height_m) +
+      WhyTooLarge(board));
+}
+
+// ---- The camera ----
+
+void DoubtFocalLength(const char* key, double value_px, double image_px, Lines* lines) {
+  const double share = value_px / image_px;
+  if (share >= 0.1 && share <= 10) return;
+  lines->push_back(
+      Format("camera.%s is %.6g: it is in pixels, and usually 0.1 to 10 times the "
+             "image's side (%g px): in millimetres, or of another image size?",
+             key,
+             value_px,
+             image_px));
+}
+
+void DoubtAspect(const CameraModel& camera, Lines* lines) {
+  const double ratio = camera.fy_px / camera.fx_px;
+  if (ratio > 0.8 && ratio < 1.25) return;
+  lines->push_back(
+      Format("camera.fy_px is %.6g, %.3g times fx_px (%.6g): pixels are square in "
+             "nearly every camera: is one of the two mistyped?",
+             camera.fy_px,
+             ratio,
+             camera.fx_px));
+}
+
+bool IsNearMiddle(double centre_px, int side_px, double share) {
+  return std::abs(centre_px / side_px - 0.5) < share;
+}
+
+/// What would put the principal point near the middle of the image.
+std::string WhyOffCentre(const CameraModel& camera) {
+  constexpr double kNear = 0.1;
+  if (IsNearMiddle(camera.cy_px, camera.width_px, kNear) &&
+      IsNearMiddle(camera.cx_px, camera.height_px, kNear)) {
+    return "are cx_px and cy_px swapped, or width_px and height_px?";
+  }
+  const double scale_x = 2 * camera.cx_px / camera.width_px;
+  const double scale_y = 2 * camera.cy_px / camera.height_px;
+  if (scale_x > 0 && std::abs(scale_y / scale_x - 1) < 0.1) {
+    return Format(
+        "are the intrinsics of an image of about %.0f x %.0f px? Scale all four to this one",
+        2 * camera.cx_px,
+        2 * camera.cy_px);
+  }
+  return "a typing error, or an image that was cropped?";
+}
+
+void DoubtPrincipalPoint(const CameraModel& camera, Lines* lines) {
+  constexpr double kFar = 0.2;
+  if (IsNearMiddle(camera.cx_px, camera.width_px, kFar) &&
+      IsNearMiddle(camera.cy_px, camera.height_px, kFar)) {
+    return;
+  }
+  lines->push_back(Format("camera.cx_px, cy_px are %.6g, %.6g: far from the middle of an image of "
+                          "%d x %d px: ",
+                          camera.cx_px,
+                          camera.cy_px,
+                          camera.width_px,
+                          camera.height_px) +
+                   WhyOffCentre(camera));
+}
+
+void DoubtLens(const CameraModel& camera, Lines* lines) {
+  const double x = (camera.width_px - 1) / 2.0;
+  const double y = (camera.height_px - 1) / 2.0;
+  const std::array<Eigen::Vector2d, 4> edges_px = {Eigen::Vector2d(0, y),
+                                                   Eigen::Vector2d(2 * x, y),
+                                                   Eigen::Vector2d(x, 0),
+                                                   Eigen::Vector2d(x, 2 * y)};
+  for (const Eigen::Vector2d& edge_px : edges_px) {
+    if (camera.Unproject(edge_px)) continue;
+    lines->push_back(Format(
+        "camera.distortion: with these coefficients the lens does not reach the image's edge "
+        "at (%.0f, %.0f) px: are they another lens_model's, or in another order?",
+        edge_px.x(),
+        edge_px.y()));
+    return;
+  }
+}
+
+// ---- The drivers ----
+
+void DoubtFile(const char* key, const std::filesystem::path& path, Lines* lines) {
+  std::error_code unknown;
+  if (path.empty() || std::filesystem::exists(path, unknown)) return;
+  lines->push_back(std::string(key) + " is " + path.string() +
+                   ": there is no such file (paths are relative to the rig file's folder)");
+}
+
+void DoubtFolder(const char* section,
+                 const FrameOptions& options,
+                 const Lines& endings,
+                 Lines* lines) try {
+  if (!options.folder.empty()) FrameFolder(options, endings);
+} catch (const std::runtime_error& error) {
+  lines->push_back(std::string(section) + ".folder: " + error.what() +
+                   " (folders are relative to the rig file's own)");
+}
+
+void DoubtPairing(const Rig& rig, Lines* lines) try {
+  PairingOfDrivers(rig);
+} catch (const std::runtime_error& error) {
+  lines->push_back(std::string("lidar_driver.folder, camera_driver.folder: ") + error.what());
+}
+
+void DoubtSensorFiles(const LidarSensorOptions& sensor, Lines* lines) {
+  DoubtFile("lidar_driver.sensor.pcap", sensor.pcap, lines);
+  DoubtFile("lidar_driver.sensor.calibration", sensor.calibration, lines);
+  DoubtFile("lidar_driver.sensor.bias_from", sensor.bias_from, lines);
+}
+
+void DoubtVideo(const CameraDriverOptions& camera, Lines* lines) {
+  DoubtFile("camera_driver.device", camera.device, lines);
+  if (camera.url.find("://") == std::string::npos)
+    DoubtFile("camera_driver.url", camera.url, lines);
+}
+
+}  // namespace
+
+std::vector<std::string> BoardDoubts(const BoardSpec& board) {
+  Lines lines;
+  DoubtLength("width_m", board.width_m, 0.1, 5, &lines);
+  DoubtLength("height_m", board.height_m, 0.1, 5, &lines);
+  DoubtLength("square_m", board.square_m, 0.01, 1, &lines);
+  DoubtPattern(board, &lines);
+  return lines;
+}
+
+std::vector<std::string> CameraDoubts(const CameraModel& camera) {
+  Lines lines;
+  DoubtFocalLength("fx_px", camera.fx_px, camera.width_px, &lines);
+  DoubtFocalLength("fy_px", camera.fy_px, camera.height_px, &lines);
+  DoubtAspect(camera, &lines);
+  DoubtPrincipalPoint(camera, &lines);
+  if (lines.empty()) DoubtLens(camera, &lines);
+  return lines;
+}
+
+std::vector<std::string> DriverDoubts(const Rig& rig) {
+  const bool has_clouds = rig.lidar_driver.source == LidarDriverOptions::Source::kFolder;
+  const bool has_images = rig.camera_driver.source == CameraDriverOptions::Source::kFolder;
+  Lines lines;
+  if (has_clouds) DoubtFolder("lidar_driver", rig.lidar_driver, kCloudEndings, &lines);
+  if (has_images) DoubtFolder("camera_driver", rig.camera_driver, kImageEndings, &lines);
+  if (lines.empty()) DoubtPairing(rig, &lines);
+  if (rig.lidar_driver.source == LidarDriverOptions::Source::kSensor) {
+    DoubtSensorFiles(rig.lidar_sensor, &lines);
+  }
+  if (rig.camera_driver.source == CameraDriverOptions::Source::kVideo) {
+    DoubtVideo(rig.camera_driver, &lines);
+  }
+  return lines;
+}
+
+std::vector<std::string> RigDoubts(const Rig& rig) {
+  Lines lines = BoardDoubts(rig.board);
+  Append(CameraDoubts(rig.camera), &lines);
+  Append(DriverDoubts(rig), &lines);
+  return lines;
+}
+
+}  // namespace voqcal

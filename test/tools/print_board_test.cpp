@@ -12,8 +12,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/format.hpp"
-#include "rig/board_lines.hpp"
 #include "print_board/board_sheets.hpp"
+#include "rig/board_lines.hpp"
 #include "rig/rig.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -7,8 +7,8 @@
 
 namespace voqcal {
 
-/// A rig file's section `board` for this board, line by line, without the pattern's optional keys if
-/// all of them are as by default.
+/// A rig file's section `board` for this board, line by line, without the pattern's optional keys
+/// if all of them are as by default.
 std::vector<std::string> BoardSectionLines(const BoardSpec& board);
 
 }  // namespace voqcal

@@ -171,7 +171,7 @@ void Write(char kind, const void* bytes, std::size_t num_bytes) {
                                static_cast<std::uint8_t>(num_bytes >> 16),
                                static_cast<std::uint8_t>(num_bytes >> 24)};
   std::fwrite(head, 1, sizeof(head), stdout);
-  std::fwrite(bytes, 1, num_bytes, stdout);
+  if (num_bytes > 0) std::fwrite(bytes, 1, num_bytes, stdout);
 }
 
 void DecodePackets(const PacketArgs& args) {

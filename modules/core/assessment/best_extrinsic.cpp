@@ -167,8 +167,7 @@ std::vector<std::string> RefinerOptions::Problems() const {
 
 LidarBias BestExtrinsic::Bias() const {
   if (method == RefineMethod::kLikelihood) return likelihood.bias;
-  const bool is_joint = method == RefineMethod::kJoint && likelihood.IsUsable();
-  return is_joint ? likelihood.BiasAt(T_camera_lidar) : LidarBias{};
+  return method == RefineMethod::kJoint ? likelihood.BiasAt(T_camera_lidar) : LidarBias{};
 }
 
 BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias) {

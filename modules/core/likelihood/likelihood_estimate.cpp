@@ -25,6 +25,7 @@ bool LensEstimate::IsObservable() const {
 }
 
 LidarBias LikelihoodExtrinsic::BiasAt(const Eigen::Isometry3d& T_camera_lidar_given) const {
+  if (faults_m.size() == 0) return bias;  // as a message brings it: it goes with its extrinsic
   const Eigen::VectorXd moves_m =
       faults_by_extrinsic * DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
   LidarBias moved = bias;

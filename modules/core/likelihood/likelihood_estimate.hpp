@@ -48,7 +48,7 @@ struct LikelihoodExtrinsic {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
   LikelihoodUncertainty uncertainty;
   LidarBias bias;
-  Eigen::VectorXd faults_m;  ///< The bias, in the order of LikelihoodState.
+  Eigen::VectorXd faults_m;  ///< The bias, in the order of LikelihoodState; empty: not known.
   /// How they follow a given extrinsic: by [rotation_rad; translation_m], left side.
   Eigen::Matrix<double, Eigen::Dynamic, 6> faults_by_extrinsic;
   LensEstimate lens;  ///< RefineWithLens'; the extrinsic then goes with the corrected camera.

@@ -48,8 +48,8 @@ std::string ClockWatch::Trouble() const {
   if (!ahead_s) return {};
   return "The camera's clock is " + Duration(std::abs(*ahead_s)) +
          (*ahead_s > 0 ? " ahead of" : " behind") +
-         " the lidar's, so that no two frames are of one time; set both by one clock (PTP or NTP), "
-         "or let both drivers take the host's time, and start them again";
+         " the lidar's, so that no two frames are of one time; set both by one clock (PTP or NTP) "
+         "and start them again";
 }
 
 }  // namespace voqcal

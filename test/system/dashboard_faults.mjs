@@ -48,7 +48,7 @@ const CLOCKS = fault(
   "sample_collector",
   "The camera's clock is 3600.0 s (60 min) ahead of the lidar's, so that no two frames are of one time",
   "",
-  "Set both by one clock (PTP or NTP), or let both drivers take the host's time, and start them again.",
+  "Set both by one clock (PTP or NTP) and start them again.",
 );
 /** Name, faults, what does not flow, and whether there may still be orders. */
 const FAULTS = [

@@ -67,7 +67,7 @@ async function exportResult() {
 
 await page.setViewportSize(SIZES.phone);
 await page.goto(readFileSync(join(session, "dashboard_url.txt"), "utf8").trim());
-await until(() => document.getElementById("connection").dataset.state === "live");
+await until(() => document.getElementById("connection").dataset.state !== "connecting");
 switchSensorsOn();
 await followTheGuidance();
 await finish();

@@ -142,20 +142,21 @@ void DoubtPrincipalPoint(const CameraModel& camera, Lines* lines) {
                    WhyOffCentre(camera));
 }
 
+// Half way to the edges: true calibrations may turn back beyond their outermost corners.
 void DoubtLens(const CameraModel& camera, Lines* lines) {
-  const double x = (camera.width_px - 1) / 2.0;
-  const double y = (camera.height_px - 1) / 2.0;
-  const std::array<Eigen::Vector2d, 4> edges_px = {Eigen::Vector2d(0, y),
-                                                   Eigen::Vector2d(2 * x, y),
-                                                   Eigen::Vector2d(x, 0),
-                                                   Eigen::Vector2d(x, 2 * y)};
-  for (const Eigen::Vector2d& edge_px : edges_px) {
-    if (camera.Unproject(edge_px)) continue;
-    lines->push_back(Format(
-        "camera.distortion: with these coefficients the lens does not reach the image's edge "
-        "at (%.0f, %.0f) px: are they another lens_model's, or in another order?",
-        edge_px.x(),
-        edge_px.y()));
+  const double x = (camera.width_px - 1) / 4.0;
+  const double y = (camera.height_px - 1) / 4.0;
+  const std::array<Eigen::Vector2d, 4> places_px = {Eigen::Vector2d(x, 2 * y),
+                                                    Eigen::Vector2d(3 * x, 2 * y),
+                                                    Eigen::Vector2d(2 * x, y),
+                                                    Eigen::Vector2d(2 * x, 3 * y)};
+  for (const Eigen::Vector2d& place_px : places_px) {
+    if (camera.Unproject(place_px)) continue;
+    lines->push_back(
+        Format("camera.distortion: with these coefficients the lens does not even reach "
+               "(%.0f, %.0f) px: are they another lens_model's, or in another order?",
+               place_px.x(),
+               place_px.y()));
     return;
   }
 }

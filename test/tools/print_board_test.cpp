@@ -17,6 +17,10 @@
 #include "rig/rig.hpp"
 #include "support/temporary_folder.hpp"
 
+// Fontconfig keeps the fonts that it found until the process ends, by way of cairo.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
+
 namespace voqcal {
 namespace {
 

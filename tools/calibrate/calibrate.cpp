@@ -89,7 +89,10 @@ void RunCalibrate(const CalibrateArgs& args) {
                          kSamplesLogName);  // a live session's, which must not be replaced
   const ScratchFolder scratch(args.out);
   InputPaths input = args.input;
-  if (!args.bag.paths.empty()) input.log = ImportBag(rig, args.bag, input.times, scratch.path());
+  if (!args.bag.paths.empty()) {
+    input.log = ImportBag(rig, args.bag, input.times, scratch.path());
+    input.times = RecordingTimes::kStamps;  // the import has settled them
+  }
   const auto run = CollectSamples(rig, input, scratch.path());
   run->Finish(/*is_collecting_only=*/false);
   const std::string wrong_sign = WrongOffsetSign(run->samples(), rig.board);

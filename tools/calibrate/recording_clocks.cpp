@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/format.hpp"
+#include "core/median.hpp"
 
 namespace voqcal {
 namespace {
@@ -20,12 +21,6 @@ constexpr double kMaxLogApartS = 0.1;  // of log times, from a sweep to the near
 constexpr std::size_t kUtimeAt = 8;    // in an encoded message, behind the type's hash
 
 double Seconds(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double StampMinusLogS(const std::vector<RecordedTime>& messages) {
   std::vector<double> differences_s;

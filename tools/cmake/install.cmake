@@ -29,7 +29,7 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/lcmtypes/cpp/voqcal DESTINATION include)
 # For lcm-spy; not there without a JDK.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/lib DESTINATION . FILES_MATCHING PATTERN *.jar)
 install(FILES README.md DESTINATION .)
-install(DIRECTORY docs DESTINATION .)
+install(FILES tools/symptoms.md DESTINATION tools)
 
 set(CPACK_PACKAGE_NAME voqcal)
 set(CPACK_PACKAGE_CONTACT "the voqcal developers <voqcal@localhost>")

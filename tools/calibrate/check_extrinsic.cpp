@@ -12,6 +12,7 @@
 
 #include "common/tool_main.hpp"
 #include "core/scene/scene_agreement.hpp"
+#include "core/units.hpp"
 #include "files/atomic_file.hpp"
 #include "files/transform_yaml.hpp"
 #include "messaging/bus.hpp"
@@ -28,7 +29,6 @@ namespace {
 
 constexpr int kExitDisagrees = 3;
 constexpr int kExitCannotTell = 4;
-constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
 struct CheckArgs {
   std::filesystem::path rig;
@@ -125,7 +125,7 @@ void Print(const SceneAgreement& agreement) {
               agreement.refinement.num_scenes,
               agreement.refinement.num_edges);
   for (int i = 0; i < 6; ++i) {
-    const double unit = i < 3 ? kDegreesPerRadian : 1e3;
+    const double unit = i < 3 ? kDegPerRad : 1e3;
     std::printf("%-13s  %8.2f +- %5.2f %s  %s\n",
                 names[i],
                 unit * agreement.asked[i],

@@ -4,13 +4,12 @@
 #include <cstdio>
 #include <memory>
 
+#include "core/units.hpp"
 #include "figures/figures.hpp"
 #include "figures/real_session.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
 struct MethodsArgs {
   std::filesystem::path rig;
@@ -47,7 +46,7 @@ void PrintMethod(const Rig& rig,
   if (method != RefineMethod::kJoint) return;
   const BestRotation best =
       FindBestRotation(JudgedScenesOf(held_out), rig.camera, refined.T_camera_lidar);
-  const Eigen::Vector3d turn_deg = kDegreesPerRadian * best.turn_rad;
+  const Eigen::Vector3d turn_deg = kDegPerRad * best.turn_rad;
   std::printf("best rotation of the judge: %.4f, %.2f %.2f %.2f deg from the joint one\n",
               best.score,
               turn_deg.x(),

@@ -7,10 +7,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/units.hpp"
+
 namespace voqcal {
 namespace {
-
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 double Wrapped(double angle_rad) {
   const double wrapped = std::fmod(angle_rad, 2 * M_PI);

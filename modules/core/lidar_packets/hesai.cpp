@@ -7,11 +7,11 @@
 #include "core/lidar_packets/beam_table.hpp"
 #include "core/lidar_packets/hesai_angles.hpp"
 #include "core/lidar_packets/packet_fields.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr int kTurn = 36000;  // centidegrees
 
 // Where the fields of the tail are, from its begin.

@@ -6,10 +6,11 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "core/units.hpp"
+
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr double kMPerMm = 1e-3;
 
 std::invalid_argument Bad(const std::string& key, const std::string& rule) {

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "core/problems.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr std::size_t kMaxWaiting = 4;
 constexpr std::size_t kMaxRecent = 8;  // a mirrored port's copy comes with or after its original
 constexpr std::int64_t kSynchronisedUs = 500000;

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "core/lidar_packets/packet_fields.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr std::size_t kHeaderBytesV1 = 8;
 constexpr std::size_t kPointBytesV1 = 9;
 constexpr std::size_t kNumPointsV1 = 160;

@@ -8,11 +8,11 @@
 
 #include "core/lidar_packets/beam_table.hpp"
 #include "core/lidar_packets/packet_fields.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr int kNumBlocks = 12;
 constexpr int kLasersOfBlock = 32;
 constexpr std::size_t kBlockBytes = 100;

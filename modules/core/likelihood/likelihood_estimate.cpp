@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/likelihood/likelihood_equations.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 
@@ -37,10 +38,9 @@ std::string LikelihoodExtrinsic::Summary() const {
   std::ostringstream text;
   text << "likelihood " << ToString(status);
   if (!IsUsable()) return text.str();
-  constexpr double kDegreesPerRadian = 180.0 / M_PI;
   const Vector6d sigma = uncertainty.covariance.diagonal().cwiseSqrt();
   text.precision(3);
-  text << ": 1 sigma up to " << kDegreesPerRadian * sigma.head<3>().maxCoeff() << " deg and "
+  text << ": 1 sigma up to " << kDegPerRad * sigma.head<3>().maxCoeff() << " deg and "
        << 1000.0 * sigma.tail<3>().maxCoeff() << " mm; range offset " << bias.common.Text()
        << ", dark against bright " << bias.dark_step.Text();
   return text.str();

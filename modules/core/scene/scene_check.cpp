@@ -7,11 +7,11 @@
 #include "core/format.hpp"
 #include "core/median.hpp"
 #include "core/problems.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr int kNumSectors = 12;
 using Sectors = unsigned;  // a bit for each
 constexpr Sectors kAllSectors = (1U << kNumSectors) - 1;

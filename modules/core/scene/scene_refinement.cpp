@@ -12,6 +12,7 @@
 #include "core/problems.hpp"
 #include "core/scene/scene_problem.hpp"
 #include "core/scene/scene_solver.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
@@ -98,7 +99,6 @@ SceneVector Estimate(const SceneProblem& scene, int max_iterations, SceneTrust* 
 }
 
 std::string ReasonOf(const SceneRefinement& refined) {
-  constexpr double kDegreesPerRadian = 180.0 / M_PI;
   constexpr double kUnexpectedChi2 = 12.6;  // one in twenty, of six degrees of freedom
   std::string text = Format("parts of the scene left out fit %s by %.4f +- %.4f",
                             refined.held_out_gain > 0 ? "better" : "worse",
@@ -106,7 +106,7 @@ std::string ReasonOf(const SceneRefinement& refined) {
                             refined.held_out_gain_sigma);
   if (!refined.is_used) return "the boards alone decide: " + text;
   text += Format(" when turned by %.3f deg and shifted by %.1f mm from where the boards put it",
-                 kDegreesPerRadian * refined.move.head<3>().norm(),
+                 kDegPerRad * refined.move.head<3>().norm(),
                  1e3 * refined.move.tail<3>().norm());
   if (refined.move_chi2 > kUnexpectedChi2) text += ", which is beyond the boards' own interval";
   return text;

@@ -182,7 +182,7 @@ std::string ModulesJson(const RigHealth& health, const Channels& channels, RigHe
   Json json = Of(Slot::kModules);
   json["beat"] = std::chrono::floor<std::chrono::seconds>(now.time_since_epoch()).count();
   json["modules"] = Json::array();
-  for (const auto& [name, heard] : health.heard()) {
+  for (const auto& [name, heard] : health.heartbeats().heard()) {
     json["modules"].push_back({{"name", name},
                                {"state", heard.status.state},
                                {"health", ToString(health.HealthOf(name, now))}});

@@ -1,8 +1,6 @@
 #include "health/rig_health.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <sstream>
 #include <utility>
 
 #include "core/format.hpp"
@@ -10,8 +8,6 @@
 namespace voqcal {
 namespace {
 
-// Heartbeats come once a second: two that got lost are no alarm.
-constexpr double kSilenceS = 3.0;
 // Readers count frames once a second: a stream is silent from the second report of none on.
 constexpr double kStreamSilenceS = 1.5;
 constexpr double kUsualGaps = 3.0;
@@ -32,24 +28,8 @@ bool StartsWith(const std::string& text, const std::string& prefix) {
   return text.compare(0, prefix.size(), prefix) == 0;
 }
 
-double SecondsBetween(RigHealth::Time from, RigHealth::Time to) {
-  return std::chrono::duration<double>(to - from).count();
-}
-
-bool SaysThatItEnded(const module_status_t& status) {
-  return status.state == "done" || status.state == "stopped";
-}
-
 /// "for 4 s".
 std::string For(double seconds) { return Format("for %.0f s", seconds); }
-
-std::int64_t NumReceived(const HeardModule* heard, const std::string& channel) {
-  if (heard == nullptr) return 0;
-  for (const channel_status_t& each : heard->status.channels) {
-    if (each.channel == channel) return each.num_received;
-  }
-  return 0;
-}
 
 std::string EndText(const std::string& program, const ProgramFacts& facts) {
   const std::string words = facts.last_words.empty() ? "" : "; its last words: " + facts.last_words;
@@ -57,15 +37,6 @@ std::string EndText(const std::string& program, const ProgramFacts& facts) {
 }
 
 }  // namespace
-
-std::string ToString(const Fault& fault) {
-  return fault.what + (fault.cause.empty() ? "" : ": " + fault.cause) + ". " + fault.remedy;
-}
-
-std::vector<std::string> AllModuleNames() {
-  std::istringstream names(VOQCAL_MODULES);  // modules/names.txt
-  return {std::istream_iterator<std::string>(names), {}};
-}
 
 const char* ToString(ModuleHealth health) {
   switch (health) {
@@ -96,64 +67,7 @@ const char* ToString(Flow flow) {
 }
 
 RigHealth::RigHealth(const Channels& channels, std::vector<std::string> modules, Time begin)
-    : modules_(std::move(modules)),
-      streams_{{channels.lidar_points, "lidar_driver", "lidar"},
-               {channels.camera_image, "camera_driver", "camera"},
-               {channels.lidar_board, "lidar_board_detector", "lidar_board_detector"},
-               {channels.camera_board, "camera_board_detector", "camera_board_detector"}},
-      begin_(begin) {}
-
-void RigHealth::Take(const module_status_t& status, Time now) {
-  const auto found = heard_.find(status.module);
-  HeardModule heard{status, now};
-  const HeardModule* before = found == heard_.end() ? nullptr : &found->second;
-  if (before != nullptr) {
-    const bool is_same = status.session == before->status.session;
-    const bool is_restarted = is_same && status.seq <= before->status.seq;
-    heard.num_restarts = before->num_restarts + (is_restarted ? 1 : 0);
-    heard.sessions = before->sessions;
-    const double elapsed_s = SecondsBetween(before->at, now);
-    if (is_same && !is_restarted && elapsed_s > 0) {
-      heard.published_hz =
-          static_cast<double>(status.num_published - before->status.num_published) / elapsed_s;
-    }
-    if (!is_same || is_restarted) before = nullptr;  // its counts began anew
-  }
-  NoteNews(status, before, now);
-  NoteLosses(status, before, now);
-  heard.sessions[status.session] = now;
-  if (SaysThatItEnded(status)) heard.sessions.erase(status.session);
-  heard_[status.module] = std::move(heard);
-}
-
-void RigHealth::NoteNews(const module_status_t& status, const HeardModule* before, Time now) {
-  for (Stream& stream : streams_) {
-    for (const channel_status_t& channel : status.channels) {
-      if (channel.channel != stream.channel) continue;
-      const std::int64_t num_new = channel.num_received - NumReceived(before, channel.channel);
-      // What the first heartbeat counts may have come long ago.
-      const bool is_news = before != nullptr ? num_new > 0 : channel.rate_hz > 0;
-      if (!is_news) continue;
-      if (before != nullptr) {
-        const double reported_s = SecondsBetween(before->at, now) / static_cast<double>(num_new);
-        const double since_s = stream.has_come ? SecondsBetween(stream.last_news, now) : 0.0;
-        const double gap_s = num_new > 1 ? reported_s : std::max(reported_s, since_s);
-        stream.usual_gap_s = 0.5 * (stream.usual_gap_s + gap_s);
-      }
-      stream.has_come = true;
-      stream.last_news = now;
-    }
-  }
-}
-
-void RigHealth::NoteLosses(const module_status_t& status, const HeardModule* before, Time now) {
-  const auto sum = [](const module_status_t& of) {
-    std::int64_t num_lost = 0;
-    for (const channel_status_t& channel : of.channels) num_lost += channel.num_lost;
-    return num_lost;
-  };
-  if (sum(status) > (before == nullptr ? 0 : sum(before->status))) last_loss_ = now;
-}
+    : heartbeats_(channels), modules_(std::move(modules)), begin_(begin) {}
 
 void RigHealth::Take(const SessionFacts& facts, Time now) {
   const bool has_grown = facts.num_recorded_bytes != facts_.num_recorded_bytes;
@@ -178,19 +92,17 @@ std::vector<Fault> RigHealth::Faults(Time now) const {
 }
 
 ModuleHealth RigHealth::HealthOf(const std::string& module, Time now) const {
-  const auto found = heard_.find(module);
-  if (found == heard_.end()) {
+  const HeardModule* heard = heartbeats_.Find(module);
+  if (heard == nullptr) {
     return HasEndedWell(module) ? ModuleHealth::kEnded : ModuleHealth::kSilent;
   }
-  const HeardModule& heard = found->second;
-  if (StartsWith(heard.status.state, "failed")) return ModuleHealth::kFailed;
-  if (SaysThatItEnded(heard.status)) return ModuleHealth::kEnded;
-  const bool is_silent = SecondsBetween(heard.at, now) > kSilenceS;
-  return is_silent ? ModuleHealth::kSilent : ModuleHealth::kGood;
+  if (StartsWith(heard->status.state, "failed")) return ModuleHealth::kFailed;
+  if (heard->HasEnded()) return ModuleHealth::kEnded;
+  return heard->IsSilent(now) ? ModuleHealth::kSilent : ModuleHealth::kGood;
 }
 
 Flow RigHealth::FlowOf(const std::string& channel, Time now) const {
-  for (const Stream& stream : streams_) {
+  for (const Stream& stream : heartbeats_.streams()) {
     if (stream.channel == channel) return FlowOf(stream, now);
   }
   return Flow::kNothingYet;
@@ -206,8 +118,8 @@ Flow RigHealth::FlowOf(const Stream& stream, Time now) const {
 }
 
 bool RigHealth::HasEndedWell(const std::string& module) const {
-  const auto found = heard_.find(module);
-  if (found != heard_.end()) return SaysThatItEnded(found->second.status);
+  const HeardModule* heard = heartbeats_.Find(module);
+  if (heard != nullptr) return heard->HasEnded();
   const ProgramFacts* program = ProgramOf(module);
   return program != nullptr && program->history.has_ended_well;
 }
@@ -218,12 +130,12 @@ const ProgramFacts* RigHealth::ProgramOf(const std::string& name) const {
 }
 
 bool RigHealth::IsExpected(const std::string& module) const {
-  return ProgramOf(module) != nullptr || heard_.count(module) != 0 ||
+  return ProgramOf(module) != nullptr || heartbeats_.Find(module) != nullptr ||
          std::find(modules_.begin(), modules_.end(), module) != modules_.end();
 }
 
-const RigHealth::Stream* RigHealth::StreamOfSender(const std::string& module) const {
-  for (const Stream& stream : streams_) {
+const Stream* RigHealth::StreamOfSender(const std::string& module) const {
+  for (const Stream& stream : heartbeats_.streams()) {
     if (stream.sender == module) return &stream;
   }
   return nullptr;
@@ -248,7 +160,7 @@ void RigHealth::AddSupervisorFault(std::vector<Fault>* faults) const {
 }
 
 void RigHealth::AddRivals(Time now, std::vector<Fault>* faults) const {
-  for (const std::string& rival : Rivals(now)) {
+  for (const std::string& rival : heartbeats_.Rivals(now)) {
     faults->push_back({"network",
                        "Two sessions run on one network",
                        rival,
@@ -258,12 +170,13 @@ void RigHealth::AddRivals(Time now, std::vector<Fault>* faults) const {
 
 // A detector that has nothing to read is silent for that.
 void RigHealth::AddStreamFaults(Time now, std::vector<Fault>* faults) const {
-  for (std::size_t i = 0; i < streams_.size(); ++i) {
-    const Stream& stream = streams_[i];
+  const std::vector<Stream>& streams = heartbeats_.streams();
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const Stream& stream = streams[i];
     const Flow flow = FlowOf(stream, now);
     if (flow == Flow::kFlows || flow == Flow::kEnded) continue;
     const bool is_sensor = i < 2;
-    if (!is_sensor && FlowOf(streams_[i - 2], now) != Flow::kFlows) continue;
+    if (!is_sensor && FlowOf(streams[i - 2], now) != Flow::kFlows) continue;
     const bool may_come = IsStarting(stream.sender, now) || !IsExpected(stream.sender);
     if (flow == Flow::kNothingYet && may_come) continue;
     const std::string cause = CauseAt(stream.sender, now);
@@ -293,9 +206,9 @@ bool RigHealth::IsStarting(const std::string& module, Time now) const {
   const ProgramFacts* program = ProgramOf(module);
   // tools/up starts the drivers once all else listens.
   const bool is_to_come = program != nullptr && !program->history.is_running;
-  if (is_to_come && heard_.count(module) == 0) return !program->history.was_stopped;
-  const auto found = heard_.find(module);
-  if (found != heard_.end()) return found->second.status.seq < kStartBeats;
+  const HeardModule* heard = heartbeats_.Find(module);
+  if (is_to_come && heard == nullptr) return !program->history.was_stopped;
+  if (heard != nullptr) return heard->status.seq < kStartBeats;
   if (program != nullptr) return program->running_s < kLoadedWithinS;
   return SecondsBetween(begin_, now) < kHeardWithinS;
 }
@@ -305,27 +218,27 @@ std::string RigHealth::CauseAt(const std::string& module, Time now) const {
   const bool has_run = program != nullptr && !program->history.how_ended.empty();
   if (has_run && !program->history.is_running) return EndText(module, *program);
   if (program != nullptr && program->history.was_stopped) return module + " was stopped";
-  const auto found = heard_.find(module);
-  if (found == heard_.end()) {
+  const HeardModule* heard = heartbeats_.Find(module);
+  if (heard == nullptr) {
     return IsExpected(module) ? module + " was not heard" : module + " is not of this session";
   }
-  const module_status_t& status = found->second.status;
+  const module_status_t& status = heard->status;
   switch (HealthOf(module, now)) {
     case ModuleHealth::kFailed:
       return module + " " + status.state;
     case ModuleHealth::kSilent:
-      return module + " has not answered " + For(SecondsBetween(found->second.at, now));
+      return module + " has not answered " + For(SecondsBetween(heard->at, now));
     case ModuleHealth::kGood:
     case ModuleHealth::kEnded:
       break;
   }
-  if (found->second.published_hz > kSendsHz) return module + " sends, but nothing arrives";
+  if (heard->published_hz > kSendsHz) return module + " sends, but nothing arrives";
   return status.state == "running" ? "" : module + " is " + status.state;
 }
 
 void RigHealth::AddTroubles(Time now, std::vector<Fault>* faults) const {
   const std::string mark = "trouble: ";
-  for (const auto& [module, heard] : heard_) {
+  for (const auto& [module, heard] : heartbeats_.heard()) {
     if (!StartsWith(heard.status.state, mark) || HealthOf(module, now) != ModuleHealth::kGood)
       continue;
     const std::string text = heard.status.state.substr(mark.size());
@@ -346,7 +259,7 @@ void RigHealth::AddModuleFaults(Time now, std::vector<Fault>* faults) const {
     if (is_told || !IsExpected(module)) continue;
     const ModuleHealth health = HealthOf(module, now);
     if (health == ModuleHealth::kGood || health == ModuleHealth::kEnded) continue;
-    if (heard_.count(module) == 0 && IsStarting(module, now)) continue;
+    if (heartbeats_.Find(module) == nullptr && IsStarting(module, now)) continue;
     faults->push_back({module,
                        module + (health == ModuleHealth::kFailed ? " has failed" : " is silent"),
                        CauseAt(module, now),
@@ -389,50 +302,16 @@ void RigHealth::AddRestarts(std::vector<Fault>* faults) const {
 }
 
 void RigHealth::AddLosses(Time now, std::vector<Fault>* faults) const {
-  const std::string losses = Losses();
+  const std::string losses = heartbeats_.Losses();
   if (losses.empty()) return;
-  const bool is_now = last_loss_ && SecondsBetween(*last_loss_, now) < kLossIsNewsS;
+  const bool is_now =
+      heartbeats_.last_loss() && SecondsBetween(*heartbeats_.last_loss(), now) < kLossIsNewsS;
   faults->push_back({"network",
                      is_now ? "Messages are being lost" : "Messages were lost",
                      losses,
                      "The computer or its network is too slow for the sensors' rates, or "
                      "net.core.rmem_max is too small.",
                      false});
-}
-
-std::vector<std::string> RigHealth::Rivals(Time now, const std::string& own) const {
-  std::vector<std::string> rivals;
-  for (const auto& [module, heard] : heard_) {
-    std::vector<std::string> sessions = SessionsOf(heard, now);
-    sessions.erase(std::remove(sessions.begin(), sessions.end(), own), sessions.end());
-    if (sessions.size() < (own.empty() ? 2U : 1U)) continue;
-    std::string names;
-    for (const std::string& session : sessions)
-      names += (names.empty() ? "" : " and of ") + session;
-    rivals.push_back(module + " of " + names + " runs on this network");
-  }
-  return rivals;
-}
-
-std::vector<std::string> RigHealth::SessionsOf(const HeardModule& heard, Time now) const {
-  std::vector<std::string> sessions;
-  for (const auto& [session, at] : heard.sessions) {
-    if (SecondsBetween(at, now) <= kSilenceS) sessions.push_back(session);
-  }
-  return sessions;
-}
-
-std::string RigHealth::Losses() const {
-  std::string text;
-  for (const auto& [module, heard] : heard_) {
-    for (const channel_status_t& channel : heard.status.channels) {
-      if (channel.num_lost == 0) continue;
-      text += (text.empty() ? "" : "; ") + module + ": " + std::to_string(channel.num_lost) +
-              " of " + std::to_string(channel.num_lost + channel.num_received) + " " +
-              channel.channel;
-    }
-  }
-  return text;
 }
 
 }  // namespace voqcal

@@ -62,12 +62,12 @@ module_status_t StatusOf(const std::string& session, std::int64_t seq) {
 TEST(StatusPage, NamesTwoSessionsThatRunTheSameModule) {
   StatusPage page(Channels{}, {"assessor"}, At(0));
   page.Take(StatusOf("a:/one", 7), At(0));
-  EXPECT_THAT(page.health().Rivals(At(0)), IsEmpty());
-  EXPECT_THAT(page.health().Rivals(At(0), "a:/one"), IsEmpty());
-  EXPECT_THAT(page.health().Rivals(At(0), "b:/two"),
+  EXPECT_THAT(page.health().heartbeats().Rivals(At(0)), IsEmpty());
+  EXPECT_THAT(page.health().heartbeats().Rivals(At(0), "a:/one"), IsEmpty());
+  EXPECT_THAT(page.health().heartbeats().Rivals(At(0), "b:/two"),
               ElementsAre("assessor of a:/one runs on this network"));
   page.Take(StatusOf("b:/two", 2), At(1));
-  EXPECT_THAT(page.health().Rivals(At(1)),
+  EXPECT_THAT(page.health().heartbeats().Rivals(At(1)),
               ElementsAre("assessor of a:/one and of b:/two runs on this network"));
   EXPECT_FALSE(page.IsAllGood(At(1)));
   EXPECT_THAT(page.Text(At(1)),

@@ -129,7 +129,8 @@ void RequireAlone(const StatusArgs& args) {
   const RigHealth& health = listener.page().health();
   const std::vector<std::string> ours = args.modules.empty() ? AllModuleNames() : args.modules;
   std::string problems;
-  for (const std::string& rival : health.Rivals(Clock::now(), SessionName(*args.alone_in))) {
+  for (const std::string& rival :
+       health.heartbeats().Rivals(Clock::now(), SessionName(*args.alone_in))) {
     const std::string module = rival.substr(0, rival.find(' '));
     if (std::find(ours.begin(), ours.end(), module) == ours.end()) continue;
     problems += listener.url() + ": " + rival + '\n';

@@ -67,7 +67,7 @@ void StatusPage::Take(const event_t& event) {
 bool StatusPage::IsAllGood(Time now) const {
   const std::vector<Fault> faults = health_.Faults(now);
   const auto is_grave = [](const Fault& fault) { return fault.is_grave; };
-  if (std::any_of(faults.begin(), faults.end(), is_grave) || !health_.Losses().empty())
+  if (std::any_of(faults.begin(), faults.end(), is_grave) || !health_.heartbeats().Losses().empty())
     return false;
   return std::all_of(modules_.begin(), modules_.end(), [this, now](const std::string& module) {
     const ModuleHealth health = health_.HealthOf(module, now);
@@ -89,7 +89,7 @@ std::string StatusPage::Details(Time now) const {
 
 std::vector<std::string> StatusPage::Listed() const {
   std::vector<std::string> listed = modules_;
-  for (const auto& each : health_.heard()) {
+  for (const auto& each : health_.heartbeats().heard()) {
     const bool is_new = std::find(listed.begin(), listed.end(), each.first) == listed.end();
     if (is_new) listed.push_back(each.first);
   }
@@ -115,8 +115,8 @@ std::string StatusPage::EventsText(std::size_t max_events) const {
 
 std::string StatusPage::LineOf(const std::string& module, Time now) const {
   const ModuleHealth health = health_.HealthOf(module, now);
-  const auto found = health_.heard().find(module);
-  if (found == health_.heard().end()) {
+  const auto found = health_.heartbeats().heard().find(module);
+  if (found == health_.heartbeats().heard().end()) {
     return Format(
         "%-22s %s\n", module.c_str(), health == ModuleHealth::kEnded ? "done" : "not heard");
   }
@@ -130,8 +130,8 @@ std::string StatusPage::LineOf(const std::string& module, Time now) const {
 }
 
 std::string StatusPage::DetailsOf(const std::string& module) const {
-  const auto found = health_.heard().find(module);
-  if (found == health_.heard().end()) return {};
+  const auto found = health_.heartbeats().heard().find(module);
+  if (found == health_.heartbeats().heard().end()) return {};
   const module_status_t& status = found->second.status;
   std::string text = Format("    %lld sent", static_cast<long long>(status.num_published));
   if (status.num_publish_failures != 0) {
@@ -148,7 +148,7 @@ std::string StatusPage::LastLines(Time now) const {
     if (health_.HealthOf(module, now) != ModuleHealth::kSilent) continue;
     silent += (silent.empty() ? "" : ", ") + module;
   }
-  const std::string losses = health_.Losses();
+  const std::string losses = health_.heartbeats().Losses();
   return "silent  " + (silent.empty() ? "nobody" : silent) + "\nlost    " +
          (losses.empty() ? "nothing" : losses) + '\n';
 }

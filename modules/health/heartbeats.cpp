@@ -1,0 +1,134 @@
+#include "health/heartbeats.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <sstream>
+#include <utility>
+
+namespace voqcal {
+namespace {
+
+// Heartbeats come once a second: two that got lost are no alarm.
+constexpr double kSilenceS = 3.0;
+
+std::int64_t NumReceived(const HeardModule* heard, const std::string& channel) {
+  if (heard == nullptr) return 0;
+  for (const channel_status_t& each : heard->status.channels) {
+    if (each.channel == channel) return each.num_received;
+  }
+  return 0;
+}
+
+std::vector<std::string> SessionsOf(const HeardModule& heard, HeardModule::Time now) {
+  std::vector<std::string> sessions;
+  for (const auto& [session, at] : heard.sessions) {
+    if (SecondsBetween(at, now) <= kSilenceS) sessions.push_back(session);
+  }
+  return sessions;
+}
+
+}  // namespace
+
+std::vector<std::string> AllModuleNames() {
+  std::istringstream names(VOQCAL_MODULES);  // modules/names.txt
+  return {std::istream_iterator<std::string>(names), {}};
+}
+
+double SecondsBetween(HeardModule::Time from, HeardModule::Time to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+bool HeardModule::HasEnded() const { return status.state == "done" || status.state == "stopped"; }
+
+bool HeardModule::IsSilent(Time now) const { return SecondsBetween(at, now) > kSilenceS; }
+
+Heartbeats::Heartbeats(const Channels& channels)
+    : streams_{{channels.lidar_points, "lidar_driver", "lidar"},
+               {channels.camera_image, "camera_driver", "camera"},
+               {channels.lidar_board, "lidar_board_detector", "lidar_board_detector"},
+               {channels.camera_board, "camera_board_detector", "camera_board_detector"}} {}
+
+const HeardModule* Heartbeats::Find(const std::string& module) const {
+  const auto found = heard_.find(module);
+  return found == heard_.end() ? nullptr : &found->second;
+}
+
+void Heartbeats::Take(const module_status_t& status, Time now) {
+  HeardModule heard{status, now};
+  const HeardModule* before = Find(status.module);
+  if (before != nullptr) {
+    const bool is_same = status.session == before->status.session;
+    const bool is_restarted = is_same && status.seq <= before->status.seq;
+    heard.num_restarts = before->num_restarts + (is_restarted ? 1 : 0);
+    heard.sessions = before->sessions;
+    const double elapsed_s = SecondsBetween(before->at, now);
+    if (is_same && !is_restarted && elapsed_s > 0) {
+      heard.published_hz =
+          static_cast<double>(status.num_published - before->status.num_published) / elapsed_s;
+    }
+    if (!is_same || is_restarted) before = nullptr;  // its counts began anew
+  }
+  NoteNews(status, before, now);
+  NoteLosses(status, before, now);
+  heard.sessions[status.session] = now;
+  if (heard.HasEnded()) heard.sessions.erase(status.session);
+  heard_[status.module] = std::move(heard);
+}
+
+void Heartbeats::NoteNews(const module_status_t& status, const HeardModule* before, Time now) {
+  for (Stream& stream : streams_) {
+    for (const channel_status_t& channel : status.channels) {
+      if (channel.channel != stream.channel) continue;
+      const std::int64_t num_new = channel.num_received - NumReceived(before, channel.channel);
+      // What the first heartbeat counts may have come long ago.
+      const bool is_news = before != nullptr ? num_new > 0 : channel.rate_hz > 0;
+      if (!is_news) continue;
+      if (before != nullptr) {
+        const double reported_s = SecondsBetween(before->at, now) / static_cast<double>(num_new);
+        const double since_s = stream.has_come ? SecondsBetween(stream.last_news, now) : 0.0;
+        const double gap_s = num_new > 1 ? reported_s : std::max(reported_s, since_s);
+        stream.usual_gap_s = 0.5 * (stream.usual_gap_s + gap_s);
+      }
+      stream.has_come = true;
+      stream.last_news = now;
+    }
+  }
+}
+
+void Heartbeats::NoteLosses(const module_status_t& status, const HeardModule* before, Time now) {
+  const auto sum = [](const module_status_t& of) {
+    std::int64_t num_lost = 0;
+    for (const channel_status_t& channel : of.channels) num_lost += channel.num_lost;
+    return num_lost;
+  };
+  if (sum(status) > (before == nullptr ? 0 : sum(before->status))) last_loss_ = now;
+}
+
+std::vector<std::string> Heartbeats::Rivals(Time now, const std::string& own) const {
+  std::vector<std::string> rivals;
+  for (const auto& [module, heard] : heard_) {
+    std::vector<std::string> sessions = SessionsOf(heard, now);
+    sessions.erase(std::remove(sessions.begin(), sessions.end(), own), sessions.end());
+    if (sessions.size() < (own.empty() ? 2U : 1U)) continue;
+    std::string names;
+    for (const std::string& session : sessions)
+      names += (names.empty() ? "" : " and of ") + session;
+    rivals.push_back(module + " of " + names + " runs on this network");
+  }
+  return rivals;
+}
+
+std::string Heartbeats::Losses() const {
+  std::string text;
+  for (const auto& [module, heard] : heard_) {
+    for (const channel_status_t& channel : heard.status.channels) {
+      if (channel.num_lost == 0) continue;
+      text += (text.empty() ? "" : "; ") + module + ": " + std::to_string(channel.num_lost) +
+              " of " + std::to_string(channel.num_lost + channel.num_received) + " " +
+              channel.channel;
+    }
+  }
+  return text;
+}
+
+}  // namespace voqcal

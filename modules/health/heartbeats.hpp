@@ -1,0 +1,80 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rig/rig.hpp"
+#include "voqcal/module_status_t.hpp"
+
+namespace voqcal {
+
+/// Every module of the flow, in its order.
+std::vector<std::string> AllModuleNames();
+
+/// A module as its heartbeats tell.
+struct HeardModule {
+  using Time = std::chrono::steady_clock::time_point;
+
+  module_status_t status;
+  Time at;                                 ///< Of the last heartbeat.
+  double published_hz = 0;                 ///< Between the last two.
+  int num_restarts = 0;                    ///< Times that the numbering began anew.
+  std::map<std::string, Time> sessions{};  ///< That send it, each with its last heartbeat.
+
+  /// It said so itself.
+  bool HasEnded() const;
+  /// No heartbeat for three seconds.
+  bool IsSilent(Time now) const;
+};
+
+/// A channel that samples are made of, as its readers count it.
+struct Stream {
+  std::string channel;
+  std::string sender;  ///< The module that sends it.
+  std::string name;    ///< "lidar", "camera"; of a detector its module's name.
+  bool has_come = false;
+  HeardModule::Time last_news{};
+  double usual_gap_s = 0;
+};
+
+double SecondsBetween(HeardModule::Time from, HeardModule::Time to);
+
+/// What the modules' heartbeats tell. No bus and no clock: the caller tells the time.
+class Heartbeats {
+ public:
+  using Time = HeardModule::Time;
+
+  explicit Heartbeats(const Channels& channels);
+
+  void Take(const module_status_t& status, Time now);
+
+  /// Null if it was never heard.
+  const HeardModule* Find(const std::string& module) const;
+  /// By name.
+  const std::map<std::string, HeardModule>& heard() const { return heard_; }
+  /// Of the two sensors, then of their detectors.
+  const std::vector<Stream>& streams() const { return streams_; }
+
+  /// A sentence for each module that sessions other than `own` run on this network; none: it is
+  /// free. With no `own`: for each module that more than one session runs.
+  std::vector<std::string> Rivals(Time now, const std::string& own = {}) const;
+
+  /// "lidar_board_detector: 5 of 100 LIDAR_POINTS; ...": empty if nothing was lost.
+  std::string Losses() const;
+  /// When more was last lost.
+  const std::optional<Time>& last_loss() const { return last_loss_; }
+
+ private:
+  void NoteNews(const module_status_t& status, const HeardModule* before, Time now);
+  void NoteLosses(const module_status_t& status, const HeardModule* before, Time now);
+
+  std::vector<Stream> streams_;
+  std::map<std::string, HeardModule> heard_;
+  std::optional<Time> last_loss_;
+};
+
+}  // namespace voqcal

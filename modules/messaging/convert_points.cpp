@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/lidar/cloud_fields.hpp"
+#include "core/lidar/repeated_points.hpp"
 #include "messaging/message_error.hpp"
 
 namespace voqcal {
@@ -252,6 +253,7 @@ PointCloud FromMessage(const pointcloud2_t& message) {
     }
   }
   if (ring) SetRings(rings, &cloud);
+  DropRepeatedPoints(&cloud);
   return cloud;
 }
 

@@ -17,6 +17,7 @@ pointcloud2_t ToMessage(const PointCloud& cloud_lidar_m, std::int64_t utime, std
 /// - "intensity", "ring" and "time" by any usual name (core/lidar/cloud_fields.hpp).
 /// - times: FLOAT32 and FLOAT64 are seconds, integers nanoseconds; values above 1e8 s count from
 ///   the epoch, others from utime.
+/// - a return that is there twice is read once (DropRepeatedPoints).
 ///
 /// @throws MessageError with the cause, if sizes, offsets or counts contradict each other, a
 ///     coordinate is missing, or a ring is no number from 0 to 65535.

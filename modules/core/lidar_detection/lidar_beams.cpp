@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace voqcal {
 namespace {
@@ -18,32 +17,6 @@ std::size_t SectorOf(double pseudo_azimuth, std::size_t num_sectors) {
   return static_cast<std::size_t>(pseudo_azimuth / 4.0 * static_cast<double>(num_sectors)) %
          num_sectors;
 }
-
-/// Tells most points that repeat an earlier one: a table of places in which a later one takes the
-/// slot of another.
-class RecentPlaces {
- public:
-  explicit RecentPlaces(std::size_t num_points) {
-    std::size_t num_slots = 1024;
-    while (num_slots < 2 * num_points) num_slots *= 2;
-    slots_.assign(num_slots, Eigen::Vector3f::Zero());  // the origin is no return
-  }
-
-  bool HasSeen(const Eigen::Vector3f& position_m) {
-    std::array<std::uint32_t, 3> bits{};
-    static_assert(sizeof bits == sizeof position_m);
-    std::memcpy(bits.data(), position_m.data(), sizeof bits);
-    std::uint32_t hash = 0;
-    for (const std::uint32_t word : bits) hash = (hash ^ word) * 0x9E3779B1U;
-    Eigen::Vector3f& slot = slots_[(hash ^ hash >> 15) & (slots_.size() - 1)];
-    if (slot == position_m) return true;
-    slot = position_m;
-    return false;
-  }
-
- private:
-  std::vector<Eigen::Vector3f> slots_;
-};
 
 }  // namespace
 
@@ -77,11 +50,9 @@ BeamIndex::BeamIndex(const PointCloud& cloud_lidar_m,
     : cloud_lidar_m_(&cloud_lidar_m), R_axes_lidar_(R_axes_lidar) {
   const std::vector<LidarPoint>& points = cloud_lidar_m.points;
   const Eigen::Matrix3f R = R_axes_lidar.cast<float>();
-  RecentPlaces recent(points.size());
   std::vector<std::uint8_t> sectors(points.size(), kNoSector);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!IsReturn(points[i].position_m, min_range_m)) continue;
-    if (recent.HasSeen(points[i].position_m)) continue;
     const Eigen::Vector3f position_m = R * points[i].position_m;
     const std::size_t sector = SectorOf(PseudoAzimuth(position_m.x(), position_m.y()), kNumSectors);
     sectors[i] = static_cast<std::uint8_t>(sector);

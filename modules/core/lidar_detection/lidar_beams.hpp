@@ -35,8 +35,7 @@ bool IsInShare(std::size_t i, std::size_t share, std::size_t num);
 /// The returns of a cloud by direction: those of a cone are found without looking at all.
 class BeamIndex {
  public:
-  /// @param cloud_lidar_m  borrowed; its returns nearer than `min_range_m` are left out, and a
-  ///     second return at the same place, as drivers give for a beam with one echo.
+  /// @param cloud_lidar_m  borrowed; its returns nearer than `min_range_m` are left out.
   /// @param R_axes_lidar  z about the axis that the sensor spins about, if it does: then sectors
   ///     have as many beams each.
   BeamIndex(const PointCloud& cloud_lidar_m,

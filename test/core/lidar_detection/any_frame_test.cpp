@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "core/lidar_detection/cloud_axes.hpp"
-#include "core/lidar_detection/lidar_beams.hpp"
 #include "core/lidar_detection/lidar_board.hpp"
 #include "support/synthetic_lidar_board.hpp"
 
@@ -64,20 +63,6 @@ TEST(CloudAxes, TurnWithTheCloud) {
   const Eigen::Matrix3d axes = CloudAxes(points_m);
   EXPECT_NEAR(axes.determinant(), 1.0, 1e-9);
   EXPECT_LT((CloudAxes(turned_m) - axes * R.transpose()).norm(), 1e-6);
-}
-
-TEST(BeamIndex, TakesARepeatedPointOnce) {
-  const PointCloud cloud = SynthesizeLidarBoard(Scene());
-  PointCloud twice = cloud;
-  twice.points.insert(twice.points.end(), cloud.points.begin(), cloud.points.end());
-  const auto num_in = [](const PointCloud& points) {
-    std::vector<LidarBeam> cone;
-    BeamIndex(points, 0.5).AppendCone(Eigen::Vector3d::UnitX(), 0.2, &cone);
-    return static_cast<double>(cone.size());
-  };
-  // A table of places forgets a few.
-  EXPECT_GE(num_in(twice), num_in(cloud));
-  EXPECT_LT(num_in(twice), 1.3 * num_in(cloud));
 }
 
 }  // namespace

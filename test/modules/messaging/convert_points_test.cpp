@@ -114,6 +114,12 @@ TEST(PointCloudMessage, CarriesOnlyWhatTheCloudHas) {
   ExpectSame(FromMessage(message), cloud);
 }
 
+TEST(PointCloudMessage, GivesAReturnThatIsThereTwiceOnce) {
+  PointCloud twice = Cloud();
+  for (const LidarPoint& point : Cloud().points) twice.points.push_back(point);
+  ExpectSame(FromMessage(ToMessage(twice, kUtime, 1)), Cloud());
+}
+
 TEST(PointCloudMessage, MayBeEmpty) {
   EXPECT_TRUE(FromMessage(ToMessage(PointCloud{}, kUtime, 1)).points.empty());
   EXPECT_TRUE(FromMessage(pointcloud2_t{}).points.empty());

@@ -98,8 +98,11 @@ extrinsic_refined_t ToMessage(const BestExtrinsic& best,
   Eigen::Map<Vector6d>(message.sigma_by_resampling) = uncertainty.by_resampling;
   Eigen::Map<Vector6d>(message.sigma_by_model_errors) = uncertainty.by_model_errors;
   message.range_noise_m = likelihood.noise.range_m;
-  message.outline_factor = likelihood.noise.outline_factor;
-  message.camera_factor = likelihood.noise.camera_factor;
+  const SightingErrors& errors = likelihood.noise.errors;
+  message.along_ray_error_m = errors.along_ray_m;
+  message.across_ray_error_m = errors.across_ray_m;
+  message.tilt_error_rad = errors.tilt_rad;
+  message.turn_error_rad = errors.turn_rad;
   return message;
 }
 
@@ -117,7 +120,11 @@ BestExtrinsic FromMessage(const extrinsic_refined_t& message) {
   for (const method_trial_t& trial : message.trials) best.trials.push_back(FromMessage(trial));
   best.likelihood.T_camera_lidar = best.T_camera_lidar;
   best.likelihood.bias = FromMessage(message.lidar_bias);
-  best.likelihood.noise = {message.range_noise_m, message.outline_factor, message.camera_factor};
+  best.likelihood.noise = {message.range_noise_m,
+                           {message.along_ray_error_m,
+                            message.across_ray_error_m,
+                            message.tilt_error_rad,
+                            message.turn_error_rad}};
   LikelihoodUncertainty& uncertainty = best.likelihood.uncertainty;
   uncertainty.by_likelihood = Eigen::Map<const Vector6d>(message.sigma_by_likelihood);
   uncertainty.by_resampling = Eigen::Map<const Vector6d>(message.sigma_by_resampling);

@@ -28,12 +28,14 @@ std::string ProblemOf(RefineStatus status) {
 struct WithoutOne {
   RefinedExtrinsic reprojection;
   LikelihoodExtrinsic likelihood;
+  MixedFit sightings;
 };
 
 std::vector<WithoutOne> LeaveOneOut(const std::vector<const BoardSample*>& samples,
                                     const CameraModel& camera,
                                     const Eigen::Isometry3d& T_camera_lidar_start,
                                     const LikelihoodExtrinsic& likelihood,
+                                    const JointExtrinsic& joint,
                                     const RefinerOptions& options) {
   std::vector<WithoutOne> without(samples.size());
   ParallelFor(samples.size(), [&](std::size_t i) {
@@ -44,6 +46,7 @@ std::vector<WithoutOne> LeaveOneOut(const std::vector<const BoardSample*>& sampl
     if (likelihood.IsUsable()) {
       without[i].likelihood = RefineNearby(others, likelihood, options.likelihood);
     }
+    if (joint.IsUsable()) without[i].sightings = FitNearby(others, camera, joint.sightings);
   });
   return without;
 }
@@ -82,13 +85,11 @@ SceneScore JointHeldOut(const std::vector<const BoardSample*>& samples,
                         const CameraModel& camera,
                         const JointExtrinsic& joint) {
   return ScoreEach(samples, without, [&](const BoardSample& sample, const WithoutOne& others) {
-    if (!others.reprojection.IsUsable()) return PoseScore{};
-    const Eigen::Isometry3d& T_reprojection = others.reprojection.T_camera_lidar;
+    if (!others.sightings.is_usable) return PoseScore{};
     if (!others.likelihood.IsUsable()) {
-      return ScorePose(sample, camera, joint.Without(T_reprojection, T_reprojection));
+      return ScorePose(sample, camera, joint.Without(others.sightings, nullptr));
     }
-    const Eigen::Isometry3d T_camera_lidar =
-        joint.Without(T_reprojection, others.likelihood.T_camera_lidar);
+    const Eigen::Isometry3d T_camera_lidar = joint.Without(others.sightings, &others.likelihood);
     const LidarBias bias = others.likelihood.BiasAt(T_camera_lidar);
     return ScorePose(CorrectedSample(sample, bias), camera, T_camera_lidar);
   });
@@ -221,7 +222,8 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
   if (has_points) {
     best.likelihood = RefineByLikelihood(samples, camera, T_start, options.likelihood);
   }
-  best.joint = RefineJointly(reprojection,
+  best.joint = RefineJointly(samples,
+                             T_start,
                              best.likelihood.IsUsable() ? &best.likelihood : nullptr,
                              views,
                              camera,
@@ -234,7 +236,7 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
        {}},
       {RefineMethod::kJoint, best.joint.problem, {}}};
   const std::vector<WithoutOne> without =
-      LeaveOneOut(samples, camera, T_start, best.likelihood, options);
+      LeaveOneOut(samples, camera, T_start, best.likelihood, best.joint, options);
   if (reprojection.IsUsable()) {
     best.trials[1].held_out = ReprojectionHeldOut(samples, without, camera);
   }

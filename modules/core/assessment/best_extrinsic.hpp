@@ -89,8 +89,8 @@ SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
                           const LidarBias& bias);
 
 /// Refines `average` by each method, and takes the joint one (or the one that the options name).
-/// The likelihood needs points on most boards; without it the joint one is the reprojection's,
-/// refined by the scenes.
+/// The likelihood needs points on most boards; without it the joint one is of the boards as
+/// detected, refined by the scenes.
 /// @param views  of the samples' scenes; may be empty.
 /// @throws std::invalid_argument if `options` has Problems().
 BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,

@@ -4,10 +4,13 @@
 
 namespace voqcal {
 
-Eigen::Isometry3d JointExtrinsic::Without(const Eigen::Isometry3d& T_reprojection,
-                                          const Eigen::Isometry3d& T_likelihood) const {
-  const Eigen::Isometry3d T_board =
-      PerturbLeft(T_reprojection, board.gain * DifferenceLeft(T_reprojection, T_likelihood));
+Eigen::Isometry3d JointExtrinsic::Without(const MixedFit& others,
+                                          const LikelihoodExtrinsic* likelihood) const {
+  Eigen::Isometry3d T_board = others.T_camera_lidar;
+  if (likelihood != nullptr) {
+    T_board =
+        PerturbLeft(T_board, board.gain * DifferenceLeft(T_board, likelihood->T_camera_lidar));
+  }
   // The board's share of what is known: the rest is the scene's.
   const Matrix6d share = scene.is_used
                              ? Matrix6d(scene.covariance * board.extrinsic.covariance.inverse())
@@ -16,21 +19,20 @@ Eigen::Isometry3d JointExtrinsic::Without(const Eigen::Isometry3d& T_reprojectio
                      share * DifferenceLeft(board.extrinsic.T_camera_lidar, T_board));
 }
 
-JointExtrinsic RefineJointly(const RefinedExtrinsic& reprojection,
+JointExtrinsic RefineJointly(const std::vector<const BoardSample*>& samples,
+                             const Eigen::Isometry3d& T_camera_lidar_start,
                              const LikelihoodExtrinsic* likelihood,
                              const std::vector<SceneView>& views,
                              const CameraModel& camera,
                              const SceneRefinementOptions& options) {
   JointExtrinsic joint;
-  if (!reprojection.IsUsable()) {
-    joint.problem = "the reprojection is " + ToString(reprojection.status);
+  joint.sightings = FitWithErrors(samples, camera, T_camera_lidar_start);
+  if (!joint.sightings.is_usable) {
+    joint.problem = "the boards leave the extrinsic open";
     return joint;
   }
-  if (!reprojection.covariance.allFinite()) {
-    joint.problem = "too few poses to tell how well they hold it";
-    return joint;
-  }
-  const UncertainExtrinsic robust{reprojection.T_camera_lidar, reprojection.covariance};
+  const UncertainExtrinsic robust{joint.sightings.T_camera_lidar,
+                                  joint.sightings.ExtrinsicCovariance()};
   joint.board.extrinsic = robust;
   if (likelihood != nullptr && likelihood->uncertainty.covariance.allFinite()) {
     joint.board = Combine(robust, {likelihood->T_camera_lidar, likelihood->uncertainty.covariance});

@@ -5,20 +5,23 @@
 
 #include <Eigen/Geometry>
 
+#include "core/board/board_sample.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/estimation/combine.hpp"
-#include "core/estimation/refine.hpp"
+#include "core/estimation/variance_components.hpp"
 #include "core/likelihood/likelihood_estimate.hpp"
 #include "core/scene/scene_refinement.hpp"
 #include "core/scene/scene_view.hpp"
 
 namespace voqcal {
 
-/// One extrinsic of all that there is to go by: the boards' centres, which assume nothing of the
-/// lidar; ranges and planes, as far as they agree; the edges of the scenes.
+/// One extrinsic of all that there is to go by: what both detectors say of the boards, with errors
+/// as large as they disagree; the returns themselves, with the lidar's faults, as far as they agree
+/// with that; the edges of the scenes.
 struct JointExtrinsic {
   std::string problem;      ///< Why there is none; empty if there is one.
-  CombinedExtrinsic board;  ///< Reprojection and likelihood.
+  MixedFit sightings;       ///< Of the boards as detected.
+  CombinedExtrinsic board;  ///< Of that and the likelihood.
   SceneRefinement scene;    ///< Of that; the result.
 
   bool IsUsable() const { return problem.empty(); }
@@ -27,12 +30,13 @@ struct JointExtrinsic {
 
   /// What it would be had one board not been there, from the estimates without it; the scenes are
   /// kept, which do not show the board. Linear.
-  Eigen::Isometry3d Without(const Eigen::Isometry3d& T_reprojection,
-                            const Eigen::Isometry3d& T_likelihood) const;
+  /// @param likelihood  null if there is none.
+  Eigen::Isometry3d Without(const MixedFit& others, const LikelihoodExtrinsic* likelihood) const;
 };
 
 /// @param likelihood  null if there is none.
-JointExtrinsic RefineJointly(const RefinedExtrinsic& reprojection,
+JointExtrinsic RefineJointly(const std::vector<const BoardSample*>& samples,
+                             const Eigen::Isometry3d& T_camera_lidar_start,
                              const LikelihoodExtrinsic* likelihood,
                              const std::vector<SceneView>& views,
                              const CameraModel& camera,

@@ -17,15 +17,15 @@ struct CombinedExtrinsic {
   UncertainExtrinsic extrinsic;
   /// How much of the way from the first to the second it went: delta = gain * difference.
   Matrix6d gain = Matrix6d::Zero();
-  /// Their squared difference over the sum of their covariances: 6 is expected.
-  double disagreement = 0;
 };
 
-/// Weighs two estimates by their covariances: `robust` assumes little, `sharp` more. As in
-/// Hausman's test (Specification tests in econometrics, 1978), a difference beyond what the
-/// covariances expect says that what `sharp` assumes is wrong: its covariance is widened by the
-/// square of the excess, so that it counts less the less they agree. Both saw the same samples: the
-/// covariance takes them for fully correlated as far as they tell the same.
+/// Weighs two estimates by their covariances: `robust` assumes little, `sharp` more. Both saw the
+/// same samples: if what `sharp` assumes is right, their difference has the difference of their
+/// variances (Hausman 1978, "Specification tests in econometrics", Econometrica 46). What it is
+/// beyond that, in each of the six directions by itself, is added to the variance of `sharp`, the
+/// moment estimate of DerSimonian and Laird 1986, "Meta-analysis in clinical trials", Controlled
+/// Clinical Trials 7: it counts less the less they agree. The covariance takes the two for fully
+/// correlated as far as they tell the same.
 CombinedExtrinsic Combine(const UncertainExtrinsic& robust, const UncertainExtrinsic& sharp);
 
 }  // namespace voqcal

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+
+#include "core/estimation/is_regular.hpp"
 
 namespace voqcal {
 namespace {
@@ -23,12 +24,10 @@ struct Equations {
 Equations EquationsAt(const std::vector<const BoardSample*>& samples,
                       const CameraModel& camera,
                       const Eigen::Isometry3d& T_camera_lidar,
-                      const NominalNoise& nominal,
-                      const SightingErrors& errors) {
+                      const NominalNoise& nominal) {
   Equations equations;
   for (const BoardSample* sample : samples) {
-    PoseDifference d = DifferenceOf(*sample, camera, T_camera_lidar, nominal);
-    d.C += errors.CovarianceOf(sample->camera.pose);
+    const PoseDifference d = DifferenceOf(*sample, camera, T_camera_lidar, nominal);
     const Eigen::LLT<Matrix6d> cholesky(d.C);
     const Vector6d whitened = cholesky.solve(d.r);
     const double squared = d.r.dot(whitened);
@@ -41,30 +40,18 @@ Equations EquationsAt(const std::vector<const BoardSample*>& samples,
   return equations;
 }
 
-// Units are taken out first: what is left open shows as an eigenvalue near zero.
-bool IsRegular(const Matrix6d& information) {
-  constexpr double kLeastReciprocalCondition = 1e-9;
-  const Vector6d scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  if (!scale.allFinite()) return false;
-  const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Vector6d eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Matrix6d>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
-  return eigenvalues[0] > kLeastReciprocalCondition * eigenvalues[5];
-}
-
 }  // namespace
 
 PoseFit FitPoses(const std::vector<const BoardSample*>& samples,
                  const CameraModel& camera,
                  const Eigen::Isometry3d& T_camera_lidar_start,
-                 const NominalNoise& nominal,
-                 const SightingErrors& errors) {
+                 const NominalNoise& nominal) {
   constexpr int kMaxIterations = 100;
   constexpr double kConverged = 1e-9;  // radians and metres
   PoseFit fit;
   fit.T_camera_lidar = T_camera_lidar_start;
   for (int i = 0; i < kMaxIterations && !fit.is_usable; ++i) {
-    const Equations equations = EquationsAt(samples, camera, fit.T_camera_lidar, nominal, errors);
+    const Equations equations = EquationsAt(samples, camera, fit.T_camera_lidar, nominal);
     if (!IsRegular(equations.information)) return fit;
     const Eigen::LLT<Matrix6d> cholesky(equations.information);
     const Vector6d step = cholesky.solve(equations.pull);

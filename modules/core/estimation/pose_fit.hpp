@@ -7,7 +7,6 @@
 #include "core/board/board_sample.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/estimation/pose_difference.hpp"
-#include "core/estimation/sighting_errors.hpp"
 #include "core/geometry/rigid.hpp"
 
 namespace voqcal {
@@ -24,11 +23,9 @@ struct PoseFit {
 
 /// Minimises the robust sum of PoseDifference::SquaredSigmas from `T_camera_lidar_start`. Sightings
 /// count for what they say: a board of which only the plane was measured fixes a plane.
-/// @param errors  of each sighting, beyond its covariance.
 PoseFit FitPoses(const std::vector<const BoardSample*>& samples,
                  const CameraModel& camera,
                  const Eigen::Isometry3d& T_camera_lidar_start,
-                 const NominalNoise& nominal,
-                 const SightingErrors& errors = {});
+                 const NominalNoise& nominal);
 
 }  // namespace voqcal

@@ -25,6 +25,19 @@ struct SightingErrors {
 /// of a biased lidar are off by about a degree, ranges by one or two centimetres.
 constexpr SightingErrors kPriorErrors{0.02, 0.005, 0.02, 0.005};
 
+/// What the sightings of a session share, so that no number of them averages it out.
+struct SharedErrors {
+  double range_offset_m = 0.0;  ///< Of all the lidar's ranges.
+  /// Of the outlines' height, along the lidar's z: scan lines cut the outline coarsely, and always
+  /// at the same elevations...
+  double outline_lift_m = 0.0;
+  double outline_rise = 0.0;  ///< ...growing with the range: metres a metre.
+};
+
+/// 1 sigma of each before the data speak. The heights' is twice the likelihood's, which takes out
+/// what the scan lines' offsets do to the outline's plane.
+constexpr SharedErrors kPriorSharedErrors{0.03, 0.002, 0.001};
+
 /// How one board's covariance grows with the square of each error, in the order of the struct.
 std::array<Matrix6d, 4> UnitCovariances(const BoardPose& pose_camera);
 

@@ -6,13 +6,13 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/estimation/is_regular.hpp"
 #include "core/estimation/pose_difference.hpp"
 
 namespace voqcal {
 namespace {
 
 using Variances = std::array<double, 4>;  // of SightingErrors, in its order
-using Units = std::array<Matrix6d, 4>;
 
 Variances SquaresOf(const SightingErrors& errors) {
   return {errors.along_ray_m * errors.along_ray_m,
@@ -25,10 +25,75 @@ SightingErrors RootsOf(const Variances& v) {
   return {std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
 }
 
-// One board's difference between the sensors, and how each error widens it.
+Eigen::Vector3d ToVector(const SharedErrors& shared) {
+  return {shared.range_offset_m, shared.outline_lift_m, shared.outline_rise};
+}
+
+void Move(const MixedVector& step, MixedFit* fit) {
+  fit->T_camera_lidar = PerturbLeft(fit->T_camera_lidar, step.head<6>());
+  fit->shared.range_offset_m += step[6];
+  fit->shared.outline_lift_m += step[7];
+  fit->shared.outline_rise += step[8];
+}
+
+// How the lidar's shared errors move the difference: its centre along its ray, and across it
+// upwards.
+Eigen::Matrix<double, 6, 3> BySharedErrors(const Eigen::Vector3d& centre_lidar_m,
+                                           const Eigen::Matrix3d& R_camera_lidar) {
+  const Eigen::Vector3d ray = centre_lidar_m.normalized();
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ() - ray.z() * ray;
+  Eigen::Matrix<double, 6, 3> J = Eigen::Matrix<double, 6, 3>::Zero();
+  J.bottomRows<3>() << R_camera_lidar * ray, R_camera_lidar * up,
+      centre_lidar_m.norm() * (R_camera_lidar * up);
+  return J;
+}
+
+// Gauss-Newton's equations about a fit, its priors included.
+struct MixedEquations {
+  MixedMatrix information = MixedPriorInformation();
+  MixedVector pull = MixedVector::Zero();
+
+  explicit MixedEquations(const MixedFit& fit) {
+    pull.tail<3>() = -information.bottomRightCorner<3, 3>() * ToVector(fit.shared);
+  }
+
+  void Add(const MixedDifference& d, const Matrix6d& weight) {
+    information += d.J.transpose() * weight * d.J;
+    pull -= d.J.transpose() * (weight * d.r);
+  }
+};
+
+// To the minimum for these errors; each pose with its robust weight.
+void Minimise(const std::vector<const BoardSample*>& samples,
+              const CameraModel& camera,
+              MixedFit* fit) {
+  constexpr int kMaxIterations = 100;
+  constexpr double kConverged = 1e-9;     // radians and metres
+  constexpr double kCauchyWidth = 2.385;  // 95 % efficient on normal noise
+  constexpr double kDimensions = 6.0;
+  fit->is_usable = false;
+  for (int i = 0; i < kMaxIterations && !fit->is_usable; ++i) {
+    MixedEquations equations(*fit);
+    for (const BoardSample* sample : samples) {
+      const MixedDifference d = DifferenceOf(*sample, camera, *fit);
+      const Matrix6d W = d.C.llt().solve(Matrix6d::Identity());
+      const double squared = d.r.dot(W * d.r);
+      equations.Add(d, W / (1.0 + squared / (kDimensions * kCauchyWidth * kCauchyWidth)));
+    }
+    if (!IsRegular(equations.information)) return;
+    const Eigen::LLT<MixedMatrix> cholesky(equations.information);
+    const MixedVector step = cholesky.solve(equations.pull);
+    if (!step.allFinite()) return;
+    Move(step, fit);
+    fit->covariance = cholesky.solve(MixedMatrix::Identity());
+    fit->is_usable = step.norm() < kConverged;
+  }
+}
+
+// One board's difference without any error of its own, and how each error widens it.
 struct Sighting {
-  PoseDifference difference;
-  Units units;
+  MixedDifference difference;
+  std::array<Matrix6d, 4> units;
 
   Matrix6d Weight(const Variances& variances) const {
     Matrix6d V = difference.C;
@@ -39,11 +104,11 @@ struct Sighting {
 
 std::vector<Sighting> SightingsAt(const std::vector<const BoardSample*>& samples,
                                   const CameraModel& camera,
-                                  const Eigen::Isometry3d& T_camera_lidar) {
+                                  MixedFit fit) {
+  fit.errors = {};
   std::vector<Sighting> sightings;
   for (const BoardSample* sample : samples) {
-    sightings.push_back(
-        {DifferenceOf(*sample, camera, T_camera_lidar, {}), UnitCovariances(sample->camera.pose)});
+    sightings.push_back({DifferenceOf(*sample, camera, fit), UnitCovariances(sample->camera.pose)});
   }
   return sightings;
 }
@@ -52,23 +117,23 @@ std::vector<Sighting> SightingsAt(const std::vector<const BoardSample*>& samples
 //     P = V^-1 - V^-1 J (J' V^-1 J)^-1 J' V^-1
 // a variance v whose unit is U goes to
 //     sqrt((v^2 r'P U P r + s^2) / (tr(P U) + 1 / v)),   s^2: its prior's
-Variances Step(const std::vector<Sighting>& sightings, const Variances& v, const Variances& prior) {
+Variances Step(const std::vector<Sighting>& sightings,
+               const MixedFit& fit,
+               const Variances& v,
+               const Variances& prior) {
   std::vector<Matrix6d> weights;
-  Matrix6d information = Matrix6d::Zero();
-  Vector6d pull = Vector6d::Zero();
+  MixedEquations equations(fit);
   for (const Sighting& each : sightings) {
-    const Matrix6d& W = weights.emplace_back(each.Weight(v));
-    information += each.difference.J.transpose() * W * each.difference.J;
-    pull -= each.difference.J.transpose() * W * each.difference.r;
+    equations.Add(each.difference, weights.emplace_back(each.Weight(v)));
   }
-  const Eigen::LLT<Matrix6d> cholesky(information);
-  const Vector6d delta = cholesky.solve(pull);
+  const Eigen::LLT<MixedMatrix> cholesky(equations.information);
+  const MixedVector delta = cholesky.solve(equations.pull);
   Variances squares{};
   Variances traces{};
   for (std::size_t i = 0; i < sightings.size(); ++i) {
-    const PoseDifference& d = sightings[i].difference;
+    const MixedDifference& d = sightings[i].difference;
     const Vector6d Pr = weights[i] * (d.r + d.J * delta);
-    const Matrix6d WJ = weights[i] * d.J;
+    const Eigen::Matrix<double, 6, kMixedSize> WJ = weights[i] * d.J;
     const Matrix6d P = weights[i] - WJ * cholesky.solve(WJ.transpose());
     for (std::size_t k = 0; k < v.size(); ++k) {
       squares[k] += Pr.dot(sightings[i].units[k] * Pr);
@@ -84,6 +149,24 @@ Variances Step(const std::vector<Sighting>& sightings, const Variances& v, const
 
 }  // namespace
 
+MixedDifference DifferenceOf(const BoardSample& sample,
+                             const CameraModel& camera,
+                             const MixedFit& fit) {
+  const PoseDifference plain = DifferenceOf(sample, camera, fit.T_camera_lidar, {});
+  const auto J_shared = BySharedErrors(sample.lidar.pose.centre_m, fit.T_camera_lidar.linear());
+  MixedDifference difference;
+  difference.r = plain.r + J_shared * ToVector(fit.shared);
+  difference.C = plain.C + fit.errors.CovarianceOf(sample.camera.pose);
+  difference.J << plain.J, J_shared;
+  return difference;
+}
+
+MixedMatrix MixedPriorInformation() {
+  MixedMatrix information = MixedMatrix::Zero();
+  information.diagonal().tail<3>() = ToVector(kPriorSharedErrors).cwiseAbs2().cwiseInverse();
+  return information;
+}
+
 MixedFit FitWithErrors(const std::vector<const BoardSample*>& samples,
                        const CameraModel& camera,
                        const Eigen::Isometry3d& T_camera_lidar_start) {
@@ -91,18 +174,26 @@ MixedFit FitWithErrors(const std::vector<const BoardSample*>& samples,
   constexpr int kSteps = 60;  // to a percent
   const Variances prior = SquaresOf(kPriorErrors);
   Variances variances = prior;
-  MixedFit mixed;
-  mixed.fit.T_camera_lidar = T_camera_lidar_start;
+  MixedFit fit;
+  fit.T_camera_lidar = T_camera_lidar_start;
   for (int round = 0; round < kRounds; ++round) {
-    mixed.errors = RootsOf(variances);
-    mixed.fit = FitPoses(samples, camera, mixed.fit.T_camera_lidar, {}, mixed.errors);
-    if (!mixed.fit.is_usable) return mixed;
-    const auto sightings = SightingsAt(samples, camera, mixed.fit.T_camera_lidar);
-    for (int step = 0; step < kSteps; ++step) variances = Step(sightings, variances, prior);
+    fit.errors = RootsOf(variances);
+    Minimise(samples, camera, &fit);
+    if (!fit.is_usable) return fit;
+    const auto sightings = SightingsAt(samples, camera, fit);
+    for (int i = 0; i < kSteps; ++i) variances = Step(sightings, fit, variances, prior);
   }
-  mixed.errors = RootsOf(variances);
-  mixed.fit = FitPoses(samples, camera, mixed.fit.T_camera_lidar, {}, mixed.errors);
-  return mixed;
+  fit.errors = RootsOf(variances);
+  Minimise(samples, camera, &fit);
+  return fit;
+}
+
+MixedFit FitNearby(const std::vector<const BoardSample*>& samples,
+                   const CameraModel& camera,
+                   const MixedFit& nearby) {
+  MixedFit fit = nearby;
+  Minimise(samples, camera, &fit);
+  return fit;
 }
 
 }  // namespace voqcal

@@ -67,7 +67,7 @@ Eigen::MatrixXd ExtrinsicInformation::InformationOf(const std::vector<const Boar
     poses.push_back(MakeLikelihoodPose(*sample, bias.shades, belief_.T_camera_lidar));
     state.T_camera_board.push_back(poses.back().T_camera_board);
   }
-  return Eliminate(poses, state, options_, noise).information;
+  return Eliminate(poses, state, noise).information;
 }
 
 Matrix6d ExtrinsicInformation::CovarianceOf(const Eigen::MatrixXd& information) const {

@@ -54,18 +54,10 @@ ReturnSums SumReturns(const LikelihoodPose& pose,
   return sums;
 }
 
-void AddOutline(const LikelihoodPose& pose,
-                const BoardAndLidar& at,
-                double lift_m,
+void AddOutline(const OutlineDifference& outline,
                 const Eigen::Matrix3d& covariance,
                 PoseEquations* equations) {
-  Matrix312d J_rigid;
-  const Eigen::Vector3d residual = OutlineResidual(at, pose.outline, lift_m, &J_rigid);
-  Eigen::Matrix<double, 3, kNumDense> J = Eigen::Matrix<double, 3, kNumDense>::Zero();
-  J << J_rigid, Eigen::Matrix<double, 3, kFirstRing>::Zero();
-  J.col(kPoseFaultsIndex + kLift) = OutlineByLift(pose.outline);
-  J.col(kPoseFaultsIndex + kRise) =
-      pose.outline.T_lidar_board.translation().norm() * J.col(kPoseFaultsIndex + kLift);
+  const auto& [residual, J] = outline;
   const Eigen::Matrix3d information = covariance.inverse();
   const Eigen::Matrix3d weight =
       CauchyWeight(residual.dot(information * residual) / 3.0) * information;
@@ -121,28 +113,42 @@ PoseShare EliminateBoard(const PoseEquations& pose) {
 
 }  // namespace
 
-Matrix6d CameraCovariance(const LikelihoodPose& pose,
-                          const LikelihoodOptions& options,
-                          const LikelihoodNoise& noise) {
-  constexpr double kLeastAcrossM = 1e-4;  // keeps a covariance that is unknown (zero) regular
+Matrix6d CameraCovariance(const LikelihoodPose& pose, const LikelihoodNoise& noise) {
+  // Keep a covariance that is unknown (zero) regular.
+  constexpr double kLeastAcrossM = 1e-4;
+  constexpr double kLeastTurnRad = 1e-4;
   Matrix6d covariance = pose.covariance;
-  covariance.diagonal().head<3>().array() += options.camera_error_rad * options.camera_error_rad;
-  // Along the ray: across it the pixels hold the board.
+  covariance.diagonal().head<3>().array() += kLeastTurnRad * kLeastTurnRad;
+  covariance.diagonal().tail<3>().array() += kLeastAcrossM * kLeastAcrossM;
+  // Across the ray and about the normal the pixels hold the board.
+  const auto& [along_ray_m, across_ray_m, tilt_rad, turn_rad] = noise.errors;
   const Eigen::Vector3d ray = pose.T_camera_board.translation().normalized();
-  covariance.bottomRightCorner<3, 3>() +=
-      options.camera_error_m * options.camera_error_m * ray * ray.transpose();
-  covariance.bottomRightCorner<3, 3>().diagonal().array() += kLeastAcrossM * kLeastAcrossM;
-  return noise.camera_factor * noise.camera_factor * covariance;
+  const Eigen::Vector3d normal = pose.T_camera_board.linear().col(2);
+  covariance.bottomRightCorner<3, 3>() += along_ray_m * along_ray_m * ray * ray.transpose();
+  covariance.topLeftCorner<3, 3>() +=
+      tilt_rad * tilt_rad * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+  return covariance;
 }
 
-Eigen::Matrix3d OutlineCovariance(const LikelihoodPose& pose,
-                                  const LikelihoodOptions& options,
-                                  const LikelihoodNoise& noise) {
+Eigen::Matrix3d OutlineCovariance(const LikelihoodPose& pose, const LikelihoodNoise& noise) {
   Eigen::Matrix3d covariance = pose.outline.covariance;
-  covariance(0, 0) += options.outline_error_m * options.outline_error_m;
-  covariance(1, 1) += options.outline_error_m * options.outline_error_m;
-  covariance(2, 2) += options.outline_error_rad * options.outline_error_rad;
-  return noise.outline_factor * noise.outline_factor * covariance;
+  covariance.diagonal().head<2>().array() += noise.errors.across_ray_m * noise.errors.across_ray_m;
+  covariance(2, 2) += noise.errors.turn_rad * noise.errors.turn_rad;
+  return covariance;
+}
+
+OutlineDifference OutlineDifferenceAt(const LikelihoodPose& pose,
+                                      const LikelihoodState& state,
+                                      std::size_t index) {
+  Matrix312d J_rigid;
+  OutlineDifference outline;
+  outline.residual =
+      OutlineResidual(state.At(index), pose.outline, state.LiftM(pose.outline), &J_rigid);
+  outline.J << J_rigid, Eigen::Matrix<double, 3, kFirstRing>::Zero();
+  outline.J.col(kPoseFaultsIndex + kLift) = OutlineByLift(pose.outline);
+  outline.J.col(kPoseFaultsIndex + kRise) =
+      pose.outline.T_lidar_board.translation().norm() * outline.J.col(kPoseFaultsIndex + kLift);
+  return outline;
 }
 
 PoseEquations EquationsOfReturns(const LikelihoodPose& pose,
@@ -172,30 +178,36 @@ PoseEquations EquationsOfReturns(const LikelihoodPose& pose,
   return equations;
 }
 
-PoseEquations EquationsOf(const LikelihoodPose& pose,
-                          const LikelihoodState& state,
-                          std::size_t index,
-                          const LikelihoodOptions& options,
-                          const LikelihoodNoise& noise) {
-  PoseEquations equations = EquationsOfReturns(pose, state, index, noise.range_m);
-  AddOutline(pose,
-             state.At(index),
-             state.LiftM(pose.outline),
-             OutlineCovariance(pose, options, noise),
-             &equations);
-  AddChessboard(pose, state, index, CameraCovariance(pose, options, noise), &equations);
-  return equations;
+void AddBoard(const LikelihoodPose& pose,
+              const LikelihoodState& state,
+              std::size_t index,
+              const LikelihoodNoise& noise,
+              PoseEquations* equations) {
+  AddOutline(OutlineDifferenceAt(pose, state, index), OutlineCovariance(pose, noise), equations);
+  AddChessboard(pose, state, index, CameraCovariance(pose, noise), equations);
 }
 
 SharedEquations Eliminate(const std::vector<LikelihoodPose>& poses,
                           const LikelihoodState& state,
-                          const LikelihoodOptions& options,
                           const LikelihoodNoise& noise) {
+  std::vector<PoseEquations> returns;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    returns.push_back(EquationsOfReturns(poses[i], state, i, noise.range_m));
+  }
+  return Eliminate(poses, state, noise, returns);
+}
+
+SharedEquations Eliminate(const std::vector<LikelihoodPose>& poses,
+                          const LikelihoodState& state,
+                          const LikelihoodNoise& noise,
+                          const std::vector<PoseEquations>& returns) {
   const Eigen::Index num_shared = kExtrinsicSize + state.faults_m.size();
   SharedEquations shared{
       Eigen::MatrixXd::Zero(num_shared, num_shared), Eigen::VectorXd::Zero(num_shared), {}};
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    shared.poses.push_back(EliminateBoard(EquationsOf(poses[i], state, i, options, noise)));
+    PoseEquations equations = returns[i];
+    AddBoard(poses[i], state, i, noise, &equations);
+    shared.poses.push_back(EliminateBoard(equations));
     shared.information += shared.poses.back().information;
     shared.pull += shared.poses.back().pull;
   }

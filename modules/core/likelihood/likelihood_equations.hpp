@@ -59,12 +59,21 @@ PoseEquations EquationsOfReturns(const LikelihoodPose& pose,
                                  std::size_t index,
                                  double range_sigma_m);
 
-/// All that one pose says: returns, outline (with Cauchy weights too) and chessboard.
-PoseEquations EquationsOf(const LikelihoodPose& pose,
-                          const LikelihoodState& state,
-                          std::size_t index,
-                          const LikelihoodOptions& options,
-                          const LikelihoodNoise& noise);
+/// The outline's residual, and its derivative by a pose's unknowns but the rings and the lens.
+struct OutlineDifference {
+  Eigen::Vector3d residual;
+  Eigen::Matrix<double, 3, 12 + kFirstRing> J;
+};
+OutlineDifference OutlineDifferenceAt(const LikelihoodPose& pose,
+                                      const LikelihoodState& state,
+                                      std::size_t index);
+
+/// Adds what outline (with Cauchy weights too) and chessboard say to what the returns do.
+void AddBoard(const LikelihoodPose& pose,
+              const LikelihoodState& state,
+              std::size_t index,
+              const LikelihoodNoise& noise,
+              PoseEquations* equations);
 
 /// One pose with its board's unknowns eliminated (Schur complement).
 struct PoseShare {
@@ -86,15 +95,17 @@ struct SharedEquations {
 };
 SharedEquations Eliminate(const std::vector<LikelihoodPose>& poses,
                           const LikelihoodState& state,
-                          const LikelihoodOptions& options,
                           const LikelihoodNoise& noise);
 
-/// Expected covariances, model error included and scaled by the estimated noise.
-Matrix6d CameraCovariance(const LikelihoodPose& pose,
-                          const LikelihoodOptions& options,
-                          const LikelihoodNoise& noise);
-Eigen::Matrix3d OutlineCovariance(const LikelihoodPose& pose,
-                                  const LikelihoodOptions& options,
-                                  const LikelihoodNoise& noise);
+/// The same with the returns' equations at `state` at hand: they depend on no sighting's errors.
+SharedEquations Eliminate(const std::vector<LikelihoodPose>& poses,
+                          const LikelihoodState& state,
+                          const LikelihoodNoise& noise,
+                          const std::vector<PoseEquations>& returns);
+
+/// The detectors' covariances with the sightings' errors: depth and tilt are the chessboard's...
+Matrix6d CameraCovariance(const LikelihoodPose& pose, const LikelihoodNoise& noise);
+/// ...across and turn the outline's.
+Eigen::Matrix3d OutlineCovariance(const LikelihoodPose& pose, const LikelihoodNoise& noise);
 
 }  // namespace voqcal

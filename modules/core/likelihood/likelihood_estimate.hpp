@@ -8,6 +8,7 @@
 
 #include "core/camera/lens_errors.hpp"
 #include "core/estimation/refine_status.hpp"
+#include "core/estimation/sighting_errors.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/likelihood/lidar_bias.hpp"
 
@@ -15,16 +16,17 @@ namespace voqcal {
 
 /// Noise levels that the residuals show; as they start, where there are no residuals.
 struct LikelihoodNoise {
-  double range_m = 0.01;        ///< 1 sigma of one return along its ray.
-  double outline_factor = 1.0;  ///< On the outline's expected 1 sigma.
-  double camera_factor = 1.0;   ///< On the chessboard's expected 1 sigma, lidar planes comparing.
+  double range_m = 0.01;  ///< 1 sigma of one return along its ray.
+  /// Of each sighting, once the lidar's faults are taken out.
+  SightingErrors errors{0.003, 0.001, 0.005, 0.003};
 };
 
 /// How far the extrinsic may be off, 1 sigma of [rotation_rad; translation_m] perturbed on the left
 /// (camera side), by three ways of telling. Its covariance is the likelihood's, widened for each
 /// parameter to the largest.
 struct LikelihoodUncertainty {
-  /// The inverse information; faults that the data cannot tell count with their priors.
+  /// The inverse information; faults that the data cannot tell count with their priors. In the
+  /// covariance it is wider the fewer poses told the noise levels.
   Vector6d by_likelihood = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
   /// By the poses' own variety (UncertaintyOf).
   Vector6d by_resampling = by_likelihood;

@@ -15,10 +15,12 @@ struct LikelihoodOptions {
   /// lines cut the outline coarsely, and always at the same elevations.
   double outline_lift_prior_m = 0.001;
   double outline_rise_prior = 0.0005;  ///< The same, growing with the range: metres a metre.
-  double outline_error_m = 0.001;      ///< 1 sigma of the outline fit's centre, beyond its noise.
-  double outline_error_rad = 0.003;    ///< 1 sigma of its turn in the plane.
-  double camera_error_m = 0.003;       ///< 1 sigma of the chessboard's depth, beyond its noise...
-  double camera_error_rad = 0.005;  ///< ...and of its tilt: the board bends, the lens model errs.
+  /// 1 sigma of what each sighting is off by beyond the detectors' noise: the priors of what the
+  /// session shows.
+  double outline_error_m = 0.001;    ///< Of the outline's centre.
+  double outline_error_rad = 0.003;  ///< Of its turn in the plane.
+  double camera_error_m = 0.003;     ///< Of the chessboard's depth...
+  double camera_error_rad = 0.005;   ///< ...and of its tilt: the board bends, the lens model errs.
   // Plausible errors of what was measured beforehand; a covariance smaller than their effect is
   // widened to it.
   double focal_length_error = 0.0003;     ///< 1 sigma, relative.

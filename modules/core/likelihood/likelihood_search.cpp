@@ -78,7 +78,9 @@ bool LikelihoodSearch::Minimise(int max_iterations, double small_step) {
   return false;
 }
 
-void LikelihoodSearch::UpdateNoise() { noise_ = EstimateNoise(poses_, state_, options_, noise_); }
+void LikelihoodSearch::UpdateNoise() {
+  noise_ = EstimateNoise(poses_, state_, prior_information_, options_, noise_);
+}
 
 Eigen::MatrixXd LikelihoodSearch::CovarianceAllFree() const {
   constexpr double kLeastReciprocalCondition = 1e-10;
@@ -118,7 +120,7 @@ bool LikelihoodSearch::IsPhysical() const {
 }
 
 SharedEquations LikelihoodSearch::Equations() const {
-  SharedEquations equations = Eliminate(poses_, state_, options_, noise_);
+  SharedEquations equations = Eliminate(poses_, state_, noise_);
   const Eigen::Index num_faults = state_.faults_m.size();
   equations.information.diagonal().tail(num_faults) += prior_information_;
   equations.pull.tail(num_faults) -= prior_information_.cwiseProduct(state_.faults_m);

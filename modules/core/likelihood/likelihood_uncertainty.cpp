@@ -14,7 +14,8 @@ namespace voqcal {
 namespace {
 
 // The variance of Student's t over the normal's: few poses measure their own variety badly, and
-// about three of them hold the extrinsic. Six poses, 3; ten, 1.4; thirty, 1.08.
+// about three of them hold the extrinsic; the likelihood's noise levels are of as few. Six poses,
+// 3; ten, 1.4; thirty, 1.08.
 double FewPosesFactor(double num_poses) {
   constexpr double kLeastFreedom = 2.5;
   const double freedom = std::max(num_poses - 3.0, kLeastFreedom);
@@ -42,7 +43,7 @@ Vector6d Resampled(const LikelihoodSearch& search,
                                                    : gain * equations.information.col(fault);
     variance += shift.head<kExtrinsicSize>().cwiseAbs2() / information;
   }
-  return (FewPosesFactor(num) * variance).cwiseSqrt();
+  return variance.cwiseSqrt();
 }
 
 // How the pixel of a point moves under an error of the lens.
@@ -75,14 +76,13 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
                      const Eigen::MatrixXd& gain,
                      const CameraModel& camera,
                      const LikelihoodOptions& options) {
-  const double trust = search.noise().camera_factor;
   const auto sensitivity = [&](const std::function<Vector6d(const LikelihoodPose&)>& board_shift) {
     const Eigen::Index num_lens = search.state().num_lens;
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(equations.pull.size());
     for (std::size_t i = 0; i < equations.poses.size(); ++i) {
       const LikelihoodPose& pose = search.poses()[i];
       const Vector6d weighted =
-          CameraCovariance(pose, options, search.noise()).inverse() * board_shift(pose);
+          CameraCovariance(pose, search.noise()).inverse() * board_shift(pose);
       const PoseShare& share = equations.poses[i];
       pull -= share.to_board * (share.board_covariance * weighted);
       if (num_lens > 0) pull.tail(num_lens) -= pose.lens.board_by_lens.transpose() * weighted;
@@ -97,18 +97,18 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
   Vector6d variance = Vector6d::Zero();
   if (search.state().num_lens == 0) {  // else the likelihood counts them
     variance += by_lens([&](const Eigen::Vector2d& pixel_px) -> Eigen::Vector2d {
-      return trust * options.focal_length_error * (pixel_px - principal_point_px);
+      return options.focal_length_error * (pixel_px - principal_point_px);
     });
     for (int axis = 0; axis < 2; ++axis) {
       variance += by_lens([&](const Eigen::Vector2d&) -> Eigen::Vector2d {
-        return trust * options.principal_point_error_px * Eigen::Vector2d::Unit(axis);
+        return options.principal_point_error_px * Eigen::Vector2d::Unit(axis);
       });
     }
   }
   // A larger board is as much farther away.
   variance += sensitivity([&](const LikelihoodPose& pose) {
     Vector6d shift = Vector6d::Zero();
-    shift.tail<3>() = trust * options.board_size_error * pose.T_camera_board.translation();
+    shift.tail<3>() = options.board_size_error * pose.T_camera_board.translation();
     return shift;
   });
   return variance.cwiseSqrt();
@@ -123,10 +123,12 @@ LikelihoodUncertainty UncertaintyOf(const LikelihoodSearch& search,
   const Eigen::MatrixXd gain = search.Gain(equations.information);
   const Matrix6d of_extrinsic = search.Covariance(equations).topLeftCorner<6, 6>();
   LikelihoodUncertainty uncertainty;
+  const double few = std::sqrt(FewPosesFactor(static_cast<double>(search.poses().size())));
   uncertainty.by_likelihood = of_extrinsic.diagonal().cwiseSqrt();
-  uncertainty.by_resampling = Resampled(search, equations, gain);
+  uncertainty.by_resampling = few * Resampled(search, equations, gain);
   uncertainty.by_model_errors = ModelErrors(search, equations, gain, camera, options);
-  const Vector6d widened = uncertainty.by_likelihood.cwiseMax(uncertainty.by_resampling)
+  const Vector6d widened = (few * uncertainty.by_likelihood)
+                               .cwiseMax(uncertainty.by_resampling)
                                .cwiseMax(uncertainty.by_model_errors)
                                .cwiseQuotient(uncertainty.by_likelihood);
   uncertainty.covariance = widened.asDiagonal() * of_extrinsic * widened.asDiagonal();

@@ -8,7 +8,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "core/estimation/pose_difference.hpp"
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/estimation/variance_components.hpp"
 #include "core/format.hpp"
@@ -24,13 +23,7 @@ std::vector<const BoardSample*> Without(std::vector<const BoardSample*> samples,
   return samples;
 }
 
-PoseDifference WithErrors(const BoardSample& sample,
-                          const CameraModel& camera,
-                          const MixedFit& mixed) {
-  PoseDifference difference = DifferenceOf(sample, camera, mixed.fit.T_camera_lidar, {});
-  difference.C += mixed.errors.CovarianceOf(sample.camera.pose);
-  return difference;
-}
+double SquaredSigmas(const MixedDifference& d) { return d.r.dot(d.C.llt().solve(d.r)); }
 
 std::optional<SampleDifference> DifferenceFromOthers(const std::vector<const BoardSample*>& samples,
                                                      std::size_t i,
@@ -38,14 +31,14 @@ std::optional<SampleDifference> DifferenceFromOthers(const std::vector<const Boa
   const std::vector<const BoardSample*> others = Without(samples, i);
   if (others.empty()) return {};
   const MixedFit mixed = FitWithErrors(others, camera, AnalyticExtrinsic(others));
-  if (!mixed.fit.is_usable) return {};
-  PoseDifference d = WithErrors(*samples[i], camera, mixed);
-  d.C += d.J * mixed.fit.covariance * d.J.transpose();
+  if (!mixed.is_usable) return {};
+  MixedDifference d = DifferenceOf(*samples[i], camera, mixed);
+  d.C += d.J * mixed.covariance * d.J.transpose();
   return SampleDifference{samples[i]->id,
                           NumMeasuredSides(samples[i]->lidar),
                           d.r,
                           d.C.diagonal().cwiseSqrt(),
-                          std::sqrt(d.SquaredSigmas())};
+                          std::sqrt(SquaredSigmas(d))};
 }
 
 // The one that lies farthest from the others if errors are as large as in all, itself included: in
@@ -53,11 +46,11 @@ std::optional<SampleDifference> DifferenceFromOthers(const std::vector<const Boa
 std::size_t Farthest(const std::vector<const BoardSample*>& samples,
                      const CameraModel& camera,
                      const MixedFit& mixed) {
-  std::vector<PoseDifference> differences;
-  Matrix6d information = Matrix6d::Zero();
-  Vector6d pull = Vector6d::Zero();
+  std::vector<MixedDifference> differences;
+  MixedMatrix information = MixedPriorInformation();
+  MixedVector pull = MixedVector::Zero();  // the priors' own cancels at the fit
   for (const BoardSample* sample : samples) {
-    const PoseDifference& d = differences.emplace_back(WithErrors(*sample, camera, mixed));
+    const MixedDifference& d = differences.emplace_back(DifferenceOf(*sample, camera, mixed));
     const Eigen::LLT<Matrix6d> cholesky(d.C);
     information += d.J.transpose() * cholesky.solve(d.J);
     pull -= d.J.transpose() * cholesky.solve(d.r);
@@ -65,13 +58,13 @@ std::size_t Farthest(const std::vector<const BoardSample*>& samples,
   std::size_t farthest = 0;
   double largest = -1.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    PoseDifference d = differences[i];
+    MixedDifference d = differences[i];
     const Eigen::LLT<Matrix6d> cholesky(d.C);
-    const Matrix6d without = information - d.J.transpose() * cholesky.solve(d.J);
-    const Matrix6d covariance = without.llt().solve(Matrix6d::Identity());
+    const MixedMatrix without = information - d.J.transpose() * cholesky.solve(d.J);
+    const MixedMatrix covariance = without.llt().solve(MixedMatrix::Identity());
     d.r += d.J * (covariance * (pull + d.J.transpose() * cholesky.solve(d.r)));
     d.C += d.J * covariance * d.J.transpose();
-    const double squared = d.SquaredSigmas();
+    const double squared = SquaredSigmas(d);
     if (!(squared > largest)) continue;
     largest = squared;
     farthest = i;
@@ -96,7 +89,7 @@ std::vector<SampleDifference> FindOutlying(std::vector<const BoardSample*> sampl
   std::vector<SampleDifference> outlying;
   while (samples.size() > kLeastOthers) {
     const MixedFit mixed = FitWithErrors(samples, camera, AnalyticExtrinsic(samples));
-    if (!mixed.fit.is_usable) break;
+    if (!mixed.is_usable) break;
     const std::size_t farthest = Farthest(samples, camera, mixed);
     const auto difference = DifferenceFromOthers(samples, farthest, camera);
     if (!difference || !difference->IsWrong()) break;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/estimation/pose_fit.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal {
@@ -49,7 +50,7 @@ MixedFit FitOf(const std::vector<BoardSample>& samples) {
 TEST(FitWithErrors, RecoversTheErrorsOfSightings) {
   const SightingErrors truth{0.025, 0.008, 0.02, 0.006};
   const MixedFit mixed = FitOf(Session(80, truth, 1));
-  ASSERT_TRUE(mixed.fit.is_usable);
+  ASSERT_TRUE(mixed.is_usable);
   // Of 80 independent values a deviation is known to 8 %, of twice as many to 6; allow 3 sigma.
   EXPECT_NEAR(mixed.errors.along_ray_m, truth.along_ray_m, 0.24 * truth.along_ray_m);
   EXPECT_NEAR(mixed.errors.across_ray_m, truth.across_ray_m, 0.18 * truth.across_ray_m);
@@ -59,7 +60,7 @@ TEST(FitWithErrors, RecoversTheErrorsOfSightings) {
 
 TEST(FitWithErrors, FindsLittleWhereCovariancesAreHonest) {
   const MixedFit mixed = FitOf(Session(80, {}, 1));
-  ASSERT_TRUE(mixed.fit.is_usable);
+  ASSERT_TRUE(mixed.is_usable);
   // What a prior of one observation, ten times the noise along the ray, leaves among 80.
   EXPECT_LT(mixed.errors.along_ray_m, 2.0 * kCentreSigmaM);
   EXPECT_LT(mixed.errors.across_ray_m, 1.0 * kCentreSigmaM);
@@ -74,7 +75,7 @@ TEST(FitWithErrors, DoesNotTakeTheExtrinsicsUnknownsForAgreement) {
   double sum_squares = 0.0;
   for (std::uint32_t seed = 1; seed <= kRuns; ++seed) {
     const MixedFit mixed = FitOf(Session(4, truth, seed));
-    ASSERT_TRUE(mixed.fit.is_usable);
+    ASSERT_TRUE(mixed.is_usable);
     sum_squares += mixed.errors.tilt_rad * mixed.errors.tilt_rad / kRuns;
   }
   // Without the allowance three of eight degrees of freedom are lost: 0.79.
@@ -87,18 +88,19 @@ TEST(FitWithErrors, WeighsSightingsByTheirErrors) {
   double sum_mixed_m2 = 0.0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     const auto samples = Session(20, truth, seed);
-    const auto error_m2 = [](const PoseFit& fit) {
-      return DifferenceLeft(test::TestExtrinsic(), fit.T_camera_lidar).tail<3>().squaredNorm();
+    const auto error_m2 = [](const Eigen::Isometry3d& T_camera_lidar) {
+      return DifferenceLeft(test::TestExtrinsic(), T_camera_lidar).tail<3>().squaredNorm();
     };
     sum_plain_m2 +=
-        error_m2(FitPoses(test::Pointers(samples), test::TestCamera(), test::TestExtrinsic(), {}));
-    sum_mixed_m2 += error_m2(FitOf(samples).fit);
+        error_m2(FitPoses(test::Pointers(samples), test::TestCamera(), test::TestExtrinsic(), {})
+                     .T_camera_lidar);
+    sum_mixed_m2 += error_m2(FitOf(samples).T_camera_lidar);
   }
   EXPECT_LT(sum_mixed_m2, sum_plain_m2);
 }
 
 TEST(FitWithErrors, IsNotUsableWhereTheExtrinsicIsOpen) {
-  EXPECT_FALSE(FitWithErrors({}, test::TestCamera(), test::TestExtrinsic()).fit.is_usable);
+  EXPECT_FALSE(FitWithErrors({}, test::TestCamera(), test::TestExtrinsic()).is_usable);
 }
 
 TEST(SightingErrors, WidenAlongTheRayAndAboutTheNormal) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/lidar_detection/lidar_board.hpp"
+#include "support/sanitizers.hpp"
 #include "support/synthetic_lidar_board.hpp"
 
 namespace voqcal {
@@ -88,6 +89,7 @@ std::ostream& operator<<(std::ostream& out, const Lidar& lidar) {
 class LidarBoardCovariance : public testing::TestWithParam<Lidar> {};
 
 TEST_P(LidarBoardCovariance, MatchesTheErrorsOfRandomBoards) {
+  VOQCAL_LEAVE_TO_RELEASE();
   constexpr int kNumBoards = 100;
   const NormalisedError error =
       OverRandomBoards(GetParam().noise_m, GetParam().line_sigma_m, kNumBoards);

@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include "support/sanitizers.hpp"
+
 namespace voqcal {
 namespace {
 
 class SightLidarBoards : public testing::TestWithParam<ScanPattern> {};
 
 TEST_P(SightLidarBoards, GivesTheSameSeedTheSameBoardsAndVerdicts) {
+  VOQCAL_LEAVE_TO_RELEASE();
   test::LidarDetectionOptions options;
   options.pattern = GetParam();
   options.num_sweeps = 3;

@@ -195,7 +195,7 @@ TEST(RefineByLikelihood, StandsWhereCeresFindsTheMinimumOfTheSameCost) {
     }
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<OutlineCost, 3, 6, 6, 1, 1>(new OutlineCost{
-            start, pose.outline, Whitening<3>(OutlineCovariance(pose, options, refined.noise))}),
+            start, pose.outline, Whitening<3>(OutlineCovariance(pose, refined.noise))}),
         new ceres::CauchyLoss(kCauchyWidth * std::sqrt(3.0)),
         lidar.data(),
         boards[i].data(),
@@ -203,7 +203,7 @@ TEST(RefineByLikelihood, StandsWhereCeresFindsTheMinimumOfTheSameCost) {
         &rise);
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<ChessboardCost, 6, 6>(
-            new ChessboardCost{Whitening<6>(CameraCovariance(pose, options, refined.noise))}),
+            new ChessboardCost{Whitening<6>(CameraCovariance(pose, refined.noise))}),
         nullptr,
         boards[i].data());
   }

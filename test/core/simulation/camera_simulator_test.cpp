@@ -8,6 +8,7 @@
 
 #include "core/simulation/board_script.hpp"
 #include "simulated_rig.hpp"
+#include "support/sanitizers.hpp"
 
 namespace voqcal {
 namespace {
@@ -110,6 +111,7 @@ TEST(Render, DarkAndBrightSquaresHaveTheirLevels) {
 }
 
 TEST(Render, NoiseHasItsSigmaAndChangesFromFrameToFrame) {
+  VOQCAL_LEAVE_TO_RELEASE();
   test::SimulatedRig rig = test::CleanRig();
   rig.camera = test::HalfSize(rig.camera);
   const Room room;
@@ -133,6 +135,7 @@ TEST(Render, NoiseHasItsSigmaAndChangesFromFrameToFrame) {
 }
 
 TEST(Render, ChangesNothingAwayFromTheBoard) {
+  VOQCAL_LEAVE_TO_RELEASE();
   test::SimulatedRig rig = test::CleanRig();
   rig.camera = test::HalfSize(rig.camera);
   const Room room;

@@ -5,6 +5,7 @@
 #include "core/geometry/rigid.hpp"
 #include "core/simulation/board_path.hpp"
 #include "core/simulation/simulated_rig.hpp"
+#include "support/sanitizers.hpp"
 
 namespace voqcal {
 namespace {
@@ -39,6 +40,7 @@ TEST(BoardPlace, IsThatOfItsPose) {
 }
 
 TEST_F(GuidedBoardTest, RestsWhileNothingIsAsked) {
+  VOQCAL_LEAVE_TO_RELEASE();
   board_.DecideUntil(100.0);
   EXPECT_EQ(board_.stops().size(), 1U);
   EXPECT_EQ(At(99.0).matrix(), simulation_.T_lidar_board(0.0).matrix());

@@ -12,6 +12,7 @@
 #include "messaging/convert_result.hpp"
 #include "messaging/convert_simulation.hpp"
 #include "modules/nodes/node_test.hpp"
+#include "support/sanitizers.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_cameras.hpp"
 #include "voqcal/next_pose_t.hpp"
@@ -174,6 +175,7 @@ TEST_F(DriverNodesTest, NameAnImageThatIsNone) {
 
 // The lidar driver decides where the board is; the camera driver waits for that.
 TEST_F(DriverNodesTest, BothSimulatorsFollowTheGuidanceAlike) {
+  VOQCAL_LEAVE_TO_RELEASE();
   Simulate();
   rig_.simulation.follows_guidance = true;
   rig_.simulation.num_poses = 3;

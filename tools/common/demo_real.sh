@@ -61,11 +61,16 @@ fi
 
 step() { printf '\n== %s ==\n' "$*"; }
 
+# An installed voqcal, and who names another folder of programs, has them.
+build() {
+  if [ -e CMakeLists.txt ] && [ -z "${VOQCAL_BIN:-}" ]; then tools/build release "$@"; fi
+}
+
 if [ -e CMakeLists.txt ] && [ -z "${VOQCAL_BIN:-}" ]; then
   step "set up, build"
   tools/setup
-  tools/build release calibrate check_rig draft_rig import_acfr decode_packets
 fi
+build check_rig draft_rig decode_packets  # these first: who must be asked for numbers is asked soon
 require_programs
 mkdir -p "$out"
 log=$recording
@@ -91,10 +96,12 @@ fi
 if [ "$kind" = folder ]; then
   step "import"
   log=$out/raw.lcm
+  build import_acfr
   "$bin/import_acfr" "$recording" --rig "$rig" --out "$log" --force
 fi
 
 step "calibrate"
+build calibrate
 "$bin/calibrate" --rig "$rig" --log "$log" --out "$out"
 
 step "files"

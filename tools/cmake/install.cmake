@@ -31,6 +31,7 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/lib DESTINATION . FILES_MATCHING PATTERN
 install(FILES README.md DESTINATION .)
 install(FILES tools/symptoms.md tools/live.md DESTINATION tools)
 install(FILES tools/figures/numbers.md DESTINATION tools/figures)
+install(FILES modules/README.md DESTINATION modules)
 install(FILES modules/lidar_driver/README.md DESTINATION modules/lidar_driver)
 install(DIRECTORY tools/pictures DESTINATION tools
   FILES_MATCHING PATTERN *.svg PATTERN *.jpg PATTERN *.png)

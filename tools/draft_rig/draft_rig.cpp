@@ -45,11 +45,12 @@ void RequireBoard(const DraftArgs& args, const RigDraft& draft) {
       "board: board.pattern=charuco.)");
 }
 
-bool HasWholeCamera(const RigDraft& draft) {
-  for (const char* key : {"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"}) {
-    if (!draft.Has("camera", key)) return false;
+// Whoever gives one of these gives the camera: what is still missing is then told by its name.
+bool HasNumbersOfCamera(const RigDraft& draft) {
+  for (const char* key : {"lens_model", "fx_px", "fy_px", "cx_px", "cy_px", "distortion"}) {
+    if (draft.Has("camera", key)) return true;
   }
-  return true;
+  return false;
 }
 
 // What the board's numbers are, and the channels, before there is a camera.
@@ -86,8 +87,7 @@ void AddEstimatedCamera(const DraftArgs& args, RigDraft* draft) {
         "\n  camera.fx_px=900 camera.fy_px=900  focal lengths, pixels"
         "\n  camera.cx_px=640 camera.cy_px=360  principal point"
         "\n  camera.lens_model=plumb_bob        or rational, equidistant (a fisheye)"
-        "\n  camera.distortion=[-0.4,0.2,0,0,0] k1 k2 p1 p2 k3; of a fisheye k1 k2 k3 k4"
-        "\n  camera.width_px=1280 camera.height_px=720");
+        "\n  camera.distortion=[-0.4,0.2,0,0,0] k1 k2 p1 p2 k3; of a fisheye k1 k2 k3 k4");
   }
   spdlog::warn(
       "no camera is given: its intrinsics are {}. The result can be no better than they are: a "
@@ -96,14 +96,17 @@ void AddEstimatedCamera(const DraftArgs& args, RigDraft* draft) {
   draft->Add(estimate->camera, estimate->words);
 }
 
+void AddImageSize(const DraftArgs& args, RigDraft* draft) {
+  ForEachImage(args.recording, Channels{}.camera_image, 1, [&](const cv::Mat& grey) {
+    draft->AddDefault("camera", "width_px", std::to_string(grey.cols));
+    draft->AddDefault("camera", "height_px", std::to_string(grey.rows));
+  });
+}
+
 void AddCamera(const DraftArgs& args, RigDraft* draft) {
-  if (HasWholeCamera(*draft)) return;
-  std::optional<std::filesystem::path> file;
-  if (!args.camera.empty()) {
-    file = args.camera;
-  } else {
-    file = FindCameraFile(args.recording);
-  }
+  if (args.camera.empty() && HasNumbersOfCamera(*draft)) return AddImageSize(args, draft);
+  std::optional<std::filesystem::path> file = FindCameraFile(args.recording);
+  if (!args.camera.empty()) file = args.camera;
   if (file) return draft->Add(ReadCameraFile(*file), "from " + file->filename().string());
   AddEstimatedCamera(args, draft);
 }

@@ -14,9 +14,12 @@ await page.setViewportSize({ width: 1200, height: isSession ? 840 : 900 });
 const kind = out.endsWith(".png") ? { type: "png" } : { type: "jpeg", quality: 82 };
 if (isSession) {
   await page.goto(readFileSync(join(source, "dashboard_url.txt"), "utf8").trim());
-  await until(page, () => document.querySelectorAll("#samples > li").length >= 24);
+  const untilSamples = (least) =>
+    until(page, (least) => document.querySelectorAll("#samples > li").length >= least, least);
+  await untilSamples(20);
   await until(page, () => document.getElementById("verdict").dataset.grade !== "none");
-  await until(page, () => document.getElementById("camera-state").textContent.startsWith("board found"));
+  // Just when one more is taken: the board rests, and points and image are of one instant.
+  await untilSamples(1 + (await page.locator("#samples > li").count()));
   await page.screenshot({ path: out, ...kind });
 } else {
   await page.goto(pathToFileURL(resolve(source)).href);

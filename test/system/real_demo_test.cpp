@@ -101,7 +101,7 @@ TEST_F(RealDemo, CalibratesFoldersWithTheBoardsNumbersAlone) {
 }
 
 TEST_F(RealDemo, TakesTheCameraFromTheFileThatRosLeft) {
-  WriteStopsLog(rig_, Path("raw.lcm"));
+  test::WriteStopsLog(rig_, Path("raw.lcm"));
   folder_.Write(
       "ost.yaml",
       "image_width: 640\nimage_height: 400\ncamera_name: left\n"

@@ -26,7 +26,7 @@ using ::testing::Not;
 class RealDemo : public ::testing::Test {
  protected:
   RealDemo() {
-    rig_.simulation.num_poses = 12;
+    rig_.simulation.num_poses = 9;
     board_ = {"board.width_m=" + std::to_string(rig_.board.width_m),
               "board.height_m=" + std::to_string(rig_.board.height_m),
               "board.square_m=" + std::to_string(rig_.board.square_m),

@@ -18,9 +18,18 @@ if (isSession) {
     until(page, (least) => document.querySelectorAll("#samples > li").length >= least, least);
   await untilSamples(20);
   await until(page, () => document.getElementById("verdict").dataset.grade !== "none");
-  // Just when one more is taken: the board rests, and points and image are of one instant.
-  await untilSamples(1 + (await page.locator("#samples > li").count()));
-  await page.screenshot({ path: out, ...kind });
+  // Points and image of one instant, as they are where the machine keeps up.
+  const offsetUs = () => {
+    const [image, scene] = ["image", "scene"].map((id) => Number(document.getElementById(id).dataset.utime));
+    return Math.abs(image - scene);
+  };
+  const isOfOneInstant = async () => (await page.evaluate(offsetUs)) <= 150_000;
+  for (let isTaken = false; !isTaken; ) {
+    await page.waitForTimeout(50);
+    if (!(await isOfOneInstant())) continue;
+    await page.screenshot({ path: out, ...kind });
+    isTaken = await isOfOneInstant();
+  }
 } else {
   await page.goto(pathToFileURL(resolve(source)).href);
   if (source.endsWith("report.html")) {

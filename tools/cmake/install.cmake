@@ -29,7 +29,12 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/lcmtypes/cpp/voqcal DESTINATION include)
 # For lcm-spy; not there without a JDK.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/lib DESTINATION . FILES_MATCHING PATTERN *.jar)
 install(FILES README.md DESTINATION .)
-install(FILES tools/symptoms.md DESTINATION tools)
+install(FILES tools/symptoms.md tools/live.md DESTINATION tools)
+install(FILES tools/figures/numbers.md DESTINATION tools/figures)
+install(FILES modules/README.md DESTINATION modules)
+install(FILES modules/lidar_driver/README.md DESTINATION modules/lidar_driver)
+install(DIRECTORY tools/pictures DESTINATION tools
+  FILES_MATCHING PATTERN *.svg PATTERN *.jpg PATTERN *.png)
 
 set(CPACK_PACKAGE_NAME voqcal)
 set(CPACK_PACKAGE_CONTACT "the voqcal developers <voqcal@localhost>")

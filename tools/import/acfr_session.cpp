@@ -13,6 +13,7 @@
 #include "common/progress.hpp"
 #include "files/atomic_file.hpp"
 #include "files/point_cloud_file.hpp"
+#include "import/session_folders.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/encode.hpp"
@@ -77,9 +78,11 @@ image_t ImageMessage(const FrameFile& file, std::int64_t seq) {
 struct Session {
   /// @throws std::runtime_error naming the folder that is missing or empty.
   Session(const std::filesystem::path& folder, const AcfrImportOptions& options)
-      : name(folder.filename().string()),
-        clouds(FolderOptions(folder / "pcd", CloudEnding(folder / "pcd"), options), kCloudEndings),
-        images(FolderOptions(folder / "images", "", options), kImageEndings) {}
+      : Session(folder.filename().string(), FindSessionFolders(folder), options) {}
+  Session(std::string session_name, const SessionFolders& folders, const AcfrImportOptions& options)
+      : name(std::move(session_name)),
+        clouds(FolderOptions(folders.clouds, CloudEnding(folders.clouds), options), kCloudEndings),
+        images(FolderOptions(folders.images, "", options), kImageEndings) {}
 
   std::string name;
   FrameFolder clouds;

@@ -13,12 +13,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(LidarProtocols, HaveNamesOfTheirOwnWhichTheReadmeLists) {
-  const std::string readme = test::ReadBytes(std::string(VOQCAL_SOURCE_DIR) + "/README.md");
+TEST(LidarProtocols, HaveNamesOfTheirOwnWhichTheDriversNoteLists) {
+  const std::string note =
+      test::ReadBytes(std::string(VOQCAL_SOURCE_DIR) + "/modules/lidar_driver/README.md");
   std::set<std::string> names;
   for (const LidarProtocol& protocol : LidarProtocols()) {
     EXPECT_TRUE(names.insert(protocol.name).second) << protocol.name;
-    EXPECT_THAT(readme, HasSubstr('`' + protocol.name + '`'));
+    EXPECT_THAT(note, HasSubstr('`' + protocol.name + '`'));
     EXPECT_EQ(FindLidarProtocol(protocol.name), &protocol);
     EXPECT_GT(protocol.clock_us, 0) << protocol.name;
   }

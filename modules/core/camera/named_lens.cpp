@@ -15,6 +15,7 @@ const std::map<std::string, LensModel> kNames = {
     {"radtan", LensModel::kPlumbBob},
     {"radial_tangential", LensModel::kPlumbBob},
     {"radial-tangential", LensModel::kPlumbBob},
+    {"brown_conrady", LensModel::kPlumbBob},
     {"pinhole", LensModel::kPlumbBob},
     {"pinhole-radtan", LensModel::kPlumbBob},
     {"none", LensModel::kPlumbBob},

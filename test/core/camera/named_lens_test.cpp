@@ -26,7 +26,8 @@ void ExpectLens(const std::string& model,
 }
 
 TEST(LensByName, TakesTheNamesOfRosOpenCvAndKalibr) {
-  for (const char* model : {"plumb_bob", "radtan", "Radial-Tangential", "pinhole"}) {
+  for (const char* model :
+       {"plumb_bob", "radtan", "Radial-Tangential", "brown_conrady", "pinhole"}) {
     ExpectLens(model, {1, 2, 3, 4}, LensModel::kPlumbBob, {1, 2, 3, 4});
     ExpectLens(model, {1, 2, 3, 4, 5}, LensModel::kPlumbBob, {1, 2, 3, 4, 5});
   }

@@ -21,7 +21,7 @@ export async function openIndexedBag(path) {
   try {
     const bag = new Bag(reader, { decompress: await loadDecompressHandlers(), parse: false });
     await bag.open();
-    if (bag.chunkInfos.length > 0) return indexedBag(bag, reader);
+    if (bag.chunkInfos.length > 0) return indexedBag(bag, reader, path);
   } catch {
     // The scan says what is wrong.
   }
@@ -29,7 +29,13 @@ export async function openIndexedBag(path) {
   return undefined;
 }
 
-function indexedBag(bag, reader) {
+/** Whether the chunks lie in the file in the order of their times, none before the last one's end. */
+function isInOrder(chunkInfos) {
+  const byPlace = [...chunkInfos].sort((a, b) => a.chunkPosition - b.chunkPosition);
+  return byPlace.every(({ startTime }, i) => i === 0 || nanoseconds(startTime) >= nanoseconds(byPlace[i - 1].endTime));
+}
+
+function indexedBag(bag, reader, path) {
   const connections = new Connections();
   for (const [id, { topic, type, messageDefinition }] of bag.connections) {
     connections.add({ id, topic, type, definition: messageDefinition });
@@ -41,13 +47,31 @@ function indexedBag(bag, reader) {
     topics: connections.topics,
     startNs: nanoseconds(bag.startTime),
     isIndexed: true,
-    async *messages(names) {
-      for await (const { connectionId, timestamp, data } of bag.messageIterator({ topics: names })) {
-        yield connections.message(connectionId, nanoseconds(timestamp), data);
-      }
-    },
+    // Front to back where that is the order of time: twice as fast.
+    messages: (names) => (isInOrder(bag.chunkInfos) ? inFilesOrder(path, connections, names) : byIndex(bag, connections, names)),
     close: () => reader.close(),
   };
+}
+
+async function* byIndex(bag, connections, names) {
+  for await (const { connectionId, timestamp, data } of bag.messageIterator({ topics: names })) {
+    yield connections.message(connectionId, nanoseconds(timestamp), data);
+  }
+}
+
+/** @throws where there is damage, which the index knows nothing of. */
+async function* inFilesOrder(path, connections, names) {
+  const file = new FileWindow(path);
+  const remarks = [];
+  try {
+    const decompress = await loadDecompressHandlers();
+    for (const { id, logTimeNs, data } of scannedMessages(file, decompress, connections, remarks)) {
+      if (names.includes(connections.topicOf(id))) yield connections.message(id, logTimeNs, data);
+    }
+  } finally {
+    file.close();
+  }
+  if (remarks.length > 0) throw new Error(remarks.join("; "));
 }
 
 /** Reads what is there up to where the file ends or is damaged; a damaged chunk is left out. */

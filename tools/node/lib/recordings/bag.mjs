@@ -17,6 +17,7 @@ const nanoseconds = ({ sec, nsec }) => BigInt(sec) * 1_000_000_000n + BigInt(nse
 
 /** Opens by the index; undefined where the recorder left none. */
 export async function openIndexedBag(path) {
+  if (!hasIndex(path)) return undefined;
   const reader = new FileReader(path);
   try {
     const bag = new Bag(reader, { decompress: await loadDecompressHandlers(), parse: false });
@@ -27,6 +28,20 @@ export async function openIndexedBag(path) {
   }
   await reader.close();
   return undefined;
+}
+
+/** Whether the bag's header tells of an index: without one, the library would hold the whole file to look for it. */
+function hasIndex(path) {
+  const file = new FileWindow(path, { isReused: true });
+  try {
+    const header = recordAt((from, length) => file.at(from, length), BAG_MAGIC.length);
+    const position = Number(header?.fields.index_pos?.readBigUInt64LE(0) ?? 0);
+    return position > 0 && position < file.numBytes;
+  } catch {
+    return false;
+  } finally {
+    file.close();
+  }
 }
 
 /** Whether the chunks lie in the file in the order of their times, none before the last one's end. */
@@ -77,19 +92,16 @@ async function* inFilesOrder(path, connections, names) {
 /** Reads what is there up to where the file ends or is damaged; a damaged chunk is left out. */
 export async function scanBag(path) {
   const decompress = await loadDecompressHandlers();
-  const file = new FileWindow(path);
   const connections = new Connections();
-  const part = {
-    topics: connections.topics,
-    startNs: undefined,
-    isIndexed: false,
-    remarks: [],
-    close: () => file.close(),
-  };
-  for (const { id, logTimeNs } of scannedMessages(file, decompress, connections, part.remarks)) {
+  const part = { topics: connections.topics, startNs: undefined, isIndexed: false, remarks: [] };
+  const counted = new FileWindow(path, { isReused: true });
+  for (const { id, logTimeNs } of scannedMessages(counted, decompress, connections, part.remarks)) {
     connections.count(id, 1);
     if (part.startNs === undefined || logTimeNs < part.startNs) part.startNs = logTimeNs;
   }
+  counted.close();
+  const file = new FileWindow(path);
+  part.close = () => file.close();
   part.messages = async function* messages(names) {
     for (const { id, logTimeNs, data } of scannedMessages(file, decompress, connections, [])) {
       if (names.includes(connections.topicOf(id))) yield connections.message(id, logTimeNs, data);
@@ -206,7 +218,8 @@ function* chunkMessages({ fields, data }, offset, decompress, connections, damag
 function recordAt(bytesAt, at) {
   const headBytes = bytesAt(at, 4)?.readUInt32LE(0);
   if (headBytes === undefined) return undefined;
-  const fields = fieldsOf(bytesAt(at + 4, headBytes));
+  const head = bytesAt(at + 4, headBytes);
+  const fields = fieldsOf(head && Buffer.from(head)); // its place may be read anew for the data
   const dataBytes = bytesAt(at + 4 + headBytes, 4)?.readUInt32LE(0);
   if (fields?.op?.length !== 1 || dataBytes === undefined) return undefined;
   const data = bytesAt(at + 8 + headBytes, dataBytes);

@@ -90,19 +90,16 @@ async function* inFilesOrder(path, channels, names) {
 /** Reads what is there up to where the file ends or is damaged; a damaged chunk is left out. */
 export async function scanMcap(path) {
   const decompress = await loadDecompressHandlers();
-  const file = new FileWindow(path);
   const channels = new Channels();
-  const part = {
-    topics: channels.topics,
-    startNs: undefined,
-    isIndexed: false,
-    remarks: [],
-    close: () => file.close(),
-  };
-  for (const { channelId, logTime } of scannedMessages(file, decompress, channels, part.remarks, true)) {
+  const part = { topics: channels.topics, startNs: undefined, isIndexed: false, remarks: [] };
+  const counted = new FileWindow(path, { isReused: true });
+  for (const { channelId, logTime } of scannedMessages(counted, decompress, channels, part.remarks, true)) {
     channels.count(channelId);
     if (part.startNs === undefined || logTime < part.startNs) part.startNs = logTime;
   }
+  counted.close();
+  const file = new FileWindow(path);
+  part.close = () => file.close();
   part.messages = async function* messages(names) {
     for (const { channelId, logTime, data } of scannedMessages(file, decompress, channels, [], false)) {
       if (names.includes(channels.topicOf(channelId))) yield channels.message(channelId, logTime, data);
@@ -302,7 +299,7 @@ function schemaOf(bytes) {
   const name = text(bytes, 2);
   const encoding = text(bytes, name.end);
   const data = bytes.subarray(encoding.end + 4, encoding.end + 4 + bytes.readUInt32LE(encoding.end));
-  return { id: bytes.readUInt16LE(0), name: name.value, encoding: encoding.value, data };
+  return { id: bytes.readUInt16LE(0), name: name.value, encoding: encoding.value, data: Buffer.from(data) };
 }
 
 function channelOf(bytes) {

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, truncateSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
@@ -213,6 +213,15 @@ test("bag, MCAP and sqlite3 give the same log, byte for byte", { skip: !hasPytho
     return readFileSync(path(`${name}.lcm`));
   });
   for (const log of logs) assert.deepEqual(log, logs[0]);
+});
+
+test("a large bag without an index is not held whole to look for one", async () => {
+  const name = path("large.bag.active");
+  writeBag(name, messages, { hasIndex: false });
+  truncateSync(name, 1_500_000_000); // its end is a hole
+  const before = process.resourceUsage().maxRSS;
+  assert.deepEqual((await read([name])).found, expected);
+  assert.ok(process.resourceUsage().maxRSS - before < 500_000); // kB
 });
 
 test("a cut within a chunk: what of it came to the disk", async () => {

@@ -180,8 +180,14 @@ function* take({ op, fields, data }, at, connections, damage) {
   if (message && connections.topicOf(message.id) !== undefined) yield message;
 }
 
+function requireFields(fields, names) {
+  const missing = names.filter((name) => fields[name] === undefined);
+  if (missing.length > 0) throw new Error(`it has no ${missing.join(", ")}`);
+}
+
 function connectionOf(fields, data) {
-  const about = fieldsOf(data);
+  const about = fieldsOf(data) ?? {};
+  requireFields({ ...about, ...fields }, ["conn", "topic", "type", "message_definition"]);
   return {
     id: fields.conn.readUInt32LE(0),
     topic: fields.topic.toString(),
@@ -191,6 +197,7 @@ function connectionOf(fields, data) {
 }
 
 function messageOf(fields, data) {
+  requireFields(fields, ["conn", "time"]);
   const time = { sec: fields.time.readUInt32LE(0), nsec: fields.time.readUInt32LE(4) };
   return { id: fields.conn.readUInt32LE(0), logTimeNs: nanoseconds(time), data };
 }

@@ -88,4 +88,5 @@ for (const [name, make] of Object.entries(KINDS)) {
     `${name}: ${(statSync(path(name)).size / 1e6).toFixed(0)} MB; read ${rates(reading)}; imported ${rates(importing)}, ` +
       `${importing.megabytes.toFixed(0)} MB of memory; copied ${rates(copying)}`,
   );
+  if (name !== "mcap") rmSync(path(name)); // which the last one is made of
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "camera_driver/genicam_source.hpp"
 #include "camera_driver/guided_camera_source.hpp"
 #include "camera_driver/video_source.hpp"
 #include "core/simulation/simulation.hpp"
@@ -83,6 +84,8 @@ std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig, Bus* bus) {
       return std::make_unique<SimulatedCameraSource>(rig);
     case CameraDriverOptions::Source::kVideo:
       return MakeVideoSource(rig.camera_driver);
+    case CameraDriverOptions::Source::kGenicam:
+      return MakeGenicamSource(rig);
   }
   throw std::logic_error("MakeCameraSource: unknown source");
 }

@@ -5,6 +5,7 @@
 #include "files/number_text.hpp"
 #include "files/transform_yaml.hpp"
 #include "result/assessment_yaml.hpp"
+#include "result/camera_yaml.hpp"
 
 namespace voqcal {
 namespace {
@@ -15,19 +16,6 @@ std::string ErrorLine(const LensEstimate& lens, LensError error, double reach_px
          "_px: {value: " + NumberText(reach_px * lens.errors[error]) +
          ", standard_error: " + NumberText(reach_px * lens.standard_errors[error]) +
          ", status: " + (is_observable ? "estimated" : "unobservable") + "}\n";
-}
-
-std::string CameraYaml(const CameraModel& camera) {
-  std::string distortion;
-  for (int i = 0; i < NumDistortion(camera.lens); ++i) {
-    distortion += (i == 0 ? "" : ", ") + NumberText(camera.distortion[static_cast<std::size_t>(i)]);
-  }
-  return "    lens_model: " + ToString(camera.lens) +
-         "\n    width_px: " + std::to_string(camera.width_px) +
-         "\n    height_px: " + std::to_string(camera.height_px) +
-         "\n    fx_px: " + NumberText(camera.fx_px) + "\n    fy_px: " + NumberText(camera.fy_px) +
-         "\n    cx_px: " + NumberText(camera.cx_px) + "\n    cy_px: " + NumberText(camera.cy_px) +
-         "\n    distortion: [" + distortion + "]\n";
 }
 
 }  // namespace
@@ -45,7 +33,8 @@ std::string LensCorrectionYaml(const LensCorrection& correction) {
   for (Eigen::Index i = 0; i < kNumLensErrors; ++i) {
     text += ErrorLine(correction.errors, static_cast<LensError>(i), reach_px);
   }
-  return text + "  camera:  # with these errors taken out\n" + CameraYaml(correction.camera) +
+  return text + "  camera:  # with these errors taken out\n" +
+         CameraYaml(correction.camera, "    ") +
          "  T_camera_lidar:  # goes with this camera only; T_camera_lidar above with the rig "
          "file's\n" +
          TransformYaml(correction.T_camera_lidar, "    ") +

@@ -61,15 +61,17 @@ void ReadLidarSource(YamlSection* section,
 
 void ReadCameraSource(YamlSection* section, CameraDriverOptions* options) {
   using Source = CameraDriverOptions::Source;
-  const std::map<std::string, Source> sources = {
-      {"folder", Source::kFolder}, {"simulator", Source::kSimulator}, {"video", Source::kVideo}};
+  const std::map<std::string, Source> sources = {{"folder", Source::kFolder},
+                                                 {"simulator", Source::kSimulator},
+                                                 {"video", Source::kVideo},
+                                                 {"genicam", Source::kGenicam}};
   std::string text = "folder";
   section->Read("source", &text);
   const auto known = sources.find(text);
   if (known != sources.end()) {
     options->source = known->second;
   } else {
-    section->AddError("source", "must be folder, simulator or video");
+    section->AddError("source", "must be folder, simulator, video or genicam");
   }
 }
 
@@ -134,6 +136,7 @@ void ReadCameraDriver(YamlSection* top,
   section.Read("device", &options->device);
   section.Read("pipeline", &options->pipeline);
   section.Read("url", &options->url);
+  section.Read("camera_id", &options->camera_id);
   section.Read("retry_s", &options->retry_s);
   const bool is_file = options->url.find("://") == std::string::npos;
   if (is_file) options->url = Beside(rig_path, options->url).string();

@@ -77,7 +77,7 @@ struct LidarDriverOptions : FrameOptions {
 
 /// Where the camera driver's images come from.
 struct CameraDriverOptions : FrameOptions {
-  enum class Source { kFolder, kSimulator, kVideo };
+  enum class Source { kFolder, kSimulator, kVideo, kGenicam };
 
   Source source = Source::kFolder;
   int jpeg_quality = 95;  ///< Of images that are no files yet: 1 to 100.
@@ -85,7 +85,10 @@ struct CameraDriverOptions : FrameOptions {
   std::string device;    ///< V4L2: /dev/video0.
   std::string pipeline;  ///< GStreamer: "... ! appsink".
   std::string url;       ///< A stream (rtsp://...) or a video file.
-  double retry_s = 1.0;  ///< For kVideo: how long after a loss the camera is sought again.
+  /// For kGenicam: as Aravis lists it, or its address or serial number; empty: the only one there.
+  std::string camera_id;
+  /// For kVideo and kGenicam: how long after a loss the camera is sought again.
+  double retry_s = 1.0;
 
   /// As those of LidarDriverOptions.
   std::vector<std::string> Problems() const;

@@ -1,9 +1,9 @@
 #include "rig/rig_sections.hpp"
 
-#include <algorithm>
 #include <set>
 #include <variant>
 
+#include "core/camera/named_lens.hpp"
 #include "core/camera_detection/calibration_target.hpp"
 #include "files/transform_yaml.hpp"
 #include "rig/driver_sections.hpp"
@@ -94,15 +94,13 @@ void ReadLens(YamlSection* section, CameraModel* camera) {
   section->ReadRequired("lens_model", &lens_model);
   section->ReadRequired("distortion", &distortion);
   if (!section->IsComplete()) return;
-  const auto lens = LensModelFromString(lens_model);
-  if (!lens) return section->AddError("lens_model", "must be equidistant, plumb_bob or rational");
-  camera->lens = *lens;
-  if (distortion.size() != static_cast<std::size_t>(NumDistortion(*lens))) {
-    return section->AddError("distortion",
-                             "must be a list of " + std::to_string(NumDistortion(*lens)) +
-                                 " coefficients for lens_model " + lens_model);
+  const auto lens = LensByName(lens_model, distortion);
+  if (!lens) {
+    const auto& [is_of_coefficients, rule] = lens.error();
+    return section->AddError(is_of_coefficients ? "distortion" : "lens_model", rule);
   }
-  std::copy(distortion.begin(), distortion.end(), camera->distortion.begin());
+  camera->lens = lens->lens;
+  camera->distortion = lens->distortion;
 }
 
 void ReadCamera(YamlSection* top,

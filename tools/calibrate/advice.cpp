@@ -44,7 +44,7 @@ const char* TextOn(LidarBoardMiss miss) {
   switch (miss) {
     case LidarBoardMiss::kTooFewPoints:
       return "check lidar_board_detector.min_range_m and max_range_m: nearly no return lies "
-             "between";
+             "between, or the clouds are in millimetres";
     case LidarBoardMiss::kNoPlane:
       return "check board.width_m and height_m; hold the board nearer, away from walls and people";
     case LidarBoardMiss::kSizeMismatch:

@@ -33,6 +33,8 @@ std::string CameraSourceOf(const Rig& rig) {
       return "simulator";
     case CameraDriverOptions::Source::kVideo:
       return "video";
+    case CameraDriverOptions::Source::kGenicam:
+      return "genicam";
   }
   return "unknown";
 }

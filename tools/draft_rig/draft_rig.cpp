@@ -11,11 +11,11 @@
 
 #include "common/output_file.hpp"
 #include "common/tool_main.hpp"
-#include "draft_rig/camera_file.hpp"
 #include "draft_rig/camera_from_boards.hpp"
 #include "draft_rig/recorded_images.hpp"
 #include "draft_rig/rig_draft.hpp"
 #include "files/atomic_file.hpp"
+#include "import/camera_file.hpp"
 
 namespace voqcal {
 namespace {
@@ -101,6 +101,14 @@ void AddImageSize(const DraftArgs& args, RigDraft* draft) {
     draft->AddDefault("camera", "width_px", std::to_string(grey.cols));
     draft->AddDefault("camera", "height_px", std::to_string(grey.rows));
   });
+}
+
+// By the names that other programs give it.
+std::optional<std::filesystem::path> FindCameraFile(const std::filesystem::path& session) {
+  for (const char* name : {"camera.yaml", "camera_info.yaml", "ost.yaml", "camchain.yaml"}) {
+    if (std::filesystem::is_regular_file(session / name)) return session / name;
+  }
+  return {};
 }
 
 void AddCamera(const DraftArgs& args, RigDraft* draft) {

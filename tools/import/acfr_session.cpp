@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -94,13 +95,19 @@ class Pieces {
  public:
   explicit Pieces(std::string what) : what_(std::move(what)) {}
 
-  /// Writes one, or counts it as left out: one bad piece must not cost the others.
-  template <typename Write>
-  void Take(const Write& write) try {
-    write(num_taken_);
+  /// Reads one and writes it, or counts it as left out: one bad piece must not cost the others.
+  /// What cannot be written does: a full disk is no fault of a piece.
+  template <typename Read, typename Write>
+  void Take(const Read& read, const Write& write) {
+    std::optional<decltype(read(num_taken_))> piece;
+    try {
+      piece = read(num_taken_);
+    } catch (const std::runtime_error& error) {
+      if (num_left_out_++ < kMaxNamed) spdlog::warn("left out: {}", error.what());
+      return;
+    }
+    write(*piece);
     ++num_taken_;
-  } catch (const std::runtime_error& error) {
-    if (num_left_out_++ < kMaxNamed) spdlog::warn("left out: {}", error.what());
   }
 
   std::size_t num_taken() const { return static_cast<std::size_t>(num_taken_); }
@@ -130,18 +137,21 @@ ImportedFrames WriteFrames(Session session, const Rig& rig, const std::filesyste
   auto image = session.images.Next();
   while (cloud || image) {
     if (cloud && (!image || cloud->utime <= image->utime)) {
-      clouds.Take([&](std::int64_t seq) {
-        events.Write(
-            rig.channels.lidar_points,
-            ToMessage(ReadPointCloud(cloud->path), cloud->utime, static_cast<std::int32_t>(seq)));
-      });
+      clouds.Take(
+          [&](std::int64_t seq) {
+            return ToMessage(
+                ReadPointCloud(cloud->path), cloud->utime, static_cast<std::int32_t>(seq));
+          },
+          [&](const auto& message) { events.Write(rig.channels.lidar_points, message); });
       cloud = session.clouds.Next();
     } else {
-      images.Take([&](std::int64_t seq) {
-        const image_t message = ImageMessage(*image, seq);
-        events.Write(rig.channels.camera_info, ToMessage(rig.camera, image->utime, seq));
-        events.Write(rig.channels.camera_image, message);
-      });
+      const auto seq_of_info = static_cast<std::int64_t>(images.num_taken());
+      images.Take([&](std::int64_t seq) { return ImageMessage(*image, seq); },
+                  [&](const image_t& message) {
+                    events.Write(rig.channels.camera_info,
+                                 ToMessage(rig.camera, image->utime, seq_of_info));
+                    events.Write(rig.channels.camera_image, message);
+                  });
       image = session.images.Next();
     }
     progress.Show(static_cast<double>(clouds.num() + images.num()) /

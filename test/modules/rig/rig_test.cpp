@@ -202,10 +202,12 @@ TEST(LoadRig, WantsTheLensModelsOwnNumberOfCoefficients) {
   EXPECT_EQ(LoadError(text),
             "rig.yaml:4: camera.distortion must be a list of 4 coefficients for lens_model "
             "equidistant, is a list of 5");
-  text.replace(text.find("equidistant"), 11, "pinhole");
+  text.replace(text.find("equidistant"), 11, "double_sphere");
   EXPECT_EQ(
       LoadError(text),
-      "rig.yaml:3: camera.lens_model must be equidistant, plumb_bob or rational, is \"pinhole\"");
+      "rig.yaml:3: camera.lens_model must be equidistant, plumb_bob or rational (another lens: "
+      "calibrate it as one of these, with Kalibr by --models pinhole-radtan or pinhole-equi, or "
+      "rectify the images), is \"double_sphere\"");
 }
 
 TEST(LoadRig, ReportsEveryProblemOfEachPart) {

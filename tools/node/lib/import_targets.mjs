@@ -28,7 +28,7 @@ function oneToOne(kind, topic, rosType, channel, type, prepare, toLcm) {
     stampNs: stampOf,
     async encode(message, logTimeNs, settled) {
       const timeNs = settled.useLogTimes ? logTimeNs : stampOf(message);
-      return [types.encode(type, toLcm(message, timeNs / 1000n, tally.numTaken, settled[kind]))]; // LCM knows no finer
+      return [types.encodeParts(type, toLcm(message, timeNs / 1000n, tally.numTaken, settled[kind]))]; // LCM knows no finer
     },
     finish: async () => ({ encoded: [] }),
   };

@@ -1,7 +1,7 @@
 // LCM logs: events of sync word u32, number i64, time i64 us, channel length u32, data length u32,
 // channel, data; all big-endian (LCM 1.3.1, lcm/eventlog.c).
 
-import { closeSync, openSync, readSync, renameSync, rmSync, statSync, writeSync } from "node:fs";
+import { closeSync, openSync, readSync, renameSync, rmSync, statSync, writeSync, writevSync } from "node:fs";
 import { UserError } from "./command.mjs";
 
 const SYNC_WORD = 0xeda1da01;
@@ -52,16 +52,17 @@ export class LogWriter {
     process.once("exit", this.#remove);
   }
 
+  /** @param bytes  the encoded message, in one piece or several. */
   write(utime, channel, bytes) {
+    const pieces = [bytes].flat();
     const name = Buffer.from(channel);
     const header = Buffer.alloc(HEADER_BYTES);
     header.writeUInt32BE(SYNC_WORD, 0);
     header.writeBigInt64BE(this.#numEvents++, 4);
     header.writeBigInt64BE(utime, 12);
     header.writeUInt32BE(name.length, 20);
-    header.writeUInt32BE(bytes.length, 24);
-    this.#writeAll(Buffer.concat([header, name]));
-    this.#writeAll(bytes);
+    header.writeUInt32BE(pieces.reduce((sum, { length }) => sum + length, 0), 24);
+    this.#writeAll([Buffer.concat([header, name]), ...pieces]);
   }
 
   finish() {
@@ -76,8 +77,12 @@ export class LogWriter {
     process.off("exit", this.#remove);
   }
 
-  #writeAll(bytes) {
-    for (let done = 0; done < bytes.length; ) done += writeSync(this.#file, bytes, done);
+  #writeAll(pieces) {
+    let done = writevSync(this.#file, pieces);
+    for (const piece of pieces) {
+      while (done < piece.length) done += writeSync(this.#file, piece, done); // a disk that is nearly full
+      done -= piece.length;
+    }
   }
 
   #unfinished() {

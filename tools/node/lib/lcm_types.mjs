@@ -8,6 +8,7 @@ const isPrimitive = (type) => type in SIZES || type === "string";
 /** Every type of a folder of .lcm files, by name. */
 export class LcmTypes {
   #structs = new Map();
+  #fingerprints = new Map();
 
   /** @param {URL} folder  of .lcm files, one struct each, without constants. */
   constructor(folder) {
@@ -19,9 +20,14 @@ export class LcmTypes {
 
   /** @returns {Buffer} `message` as lcm-gen's encode() writes it. int64_t takes a BigInt or a number. */
   encode(type, message) {
+    return Buffer.concat(this.encodeParts(type, message));
+  }
+
+  /** The same in pieces, of which long ones are the message's own bytes: borrowed. */
+  encodeParts(type, message) {
     const parts = [bigEndian(8, (buffer) => buffer.writeBigUInt64BE(this.fingerprint(type)))];
     this.#encodeStruct(this.#struct(type), message, parts);
-    return Buffer.concat(parts);
+    return joinedWhereShort(parts);
   }
 
   /** @returns the message; int64_t as BigInt, bytes as Buffer. */
@@ -37,8 +43,11 @@ export class LcmTypes {
 
   /** The hash that opens each message: of member names, types, sizes and order (LCM 1.3.1, lcm-gen). */
   fingerprint(type) {
-    const sum = this.#hash(type, []);
-    return BigInt.asUintN(64, (sum << 1n) + (BigInt.asUintN(64, sum) >> 63n));
+    if (!this.#fingerprints.has(type)) {
+      const sum = this.#hash(type, []);
+      this.#fingerprints.set(type, BigInt.asUintN(64, (sum << 1n) + (BigInt.asUintN(64, sum) >> 63n)));
+    }
+    return this.#fingerprints.get(type);
   }
 
   #struct(type) {
@@ -105,6 +114,27 @@ export class LcmTypes {
     }
     return elements;
   }
+}
+
+/** One piece for each run of short ones. */
+function joinedWhereShort(parts) {
+  const maxShortBytes = 4096;
+  const joined = [];
+  let run = [];
+  const endRun = () => {
+    if (run.length > 0) joined.push(Buffer.concat(run));
+    run = [];
+  };
+  for (const part of parts) {
+    if (part.length <= maxShortBytes) {
+      run.push(part);
+      continue;
+    }
+    endRun();
+    joined.push(part);
+  }
+  endRun();
+  return joined;
 }
 
 function parseStruct(text) {

@@ -1,6 +1,6 @@
 // bench_recordings.mjs FOLDER [MEGABYTES]: writes one recording in each format into FOLDER (as large as that: 300 MB unless
 // told) and prints how fast it is read and how fast import_ros makes a log of it: by the time that one core worked, which
-// other programs and the disk do not change, and by the clock.
+// other programs and the disk hardly change, and by the clock; and, to compare with, how fast cp copies it.
 
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, rmSync, statSync } from "node:fs";
@@ -36,8 +36,8 @@ const messages = Array.from({ length: num }, (_, i) => 1_600_000_000_000_000_000
 ]);
 
 const KINDS = {
-  "bag": () => writeBag(path("bag"), messages),
-  "bag without index": () => writeBag(path("bag without index"), messages, { hasIndex: false }),
+  "bag": () => writeBag(path("bag"), messages, { chunkBytes: 768 << 10 }), // rosbag's own
+  "bag without index": () => writeBag(path("bag without index"), messages, { hasIndex: false, chunkBytes: 768 << 10 }),
   "mcap": () => writeMcap(path("mcap"), messages, { chunkSize: 4 << 20 }),
   "mcap without chunks": () => writeMcap(path("mcap without chunks"), messages, { useChunks: false }),
   "mcap, chunks by zstd": () => writeMcap(path("mcap, chunks by zstd"), messages, { chunkSize: 4 << 20, compressChunk: zstdChunk }),
@@ -57,6 +57,15 @@ async function secondsOf(run) {
   return { clock: Number(process.hrtime.bigint() - begin) / 1e9, core: (user + system) / 1e6 };
 }
 
+/** The same of another program, and its memory. */
+function run(...args) {
+  const begin = process.hrtime.bigint();
+  const done = spawnSync("/usr/bin/time", ["-f", "%U %S %M", ...args], { encoding: "utf8" });
+  if (done.status !== 0) throw new Error(done.stderr);
+  const [user, system, kilobytes] = done.stderr.trim().split("\n").at(-1).split(" ").map(Number);
+  return { clock: Number(process.hrtime.bigint() - begin) / 1e9, core: user + system, megabytes: kilobytes / 1024 };
+}
+
 async function read(name) {
   const recording = await openRecording([path(name)], folder);
   let numBytes = 0;
@@ -71,16 +80,13 @@ for (const [name, make] of Object.entries(KINDS)) {
   await make();
   let numBytes;
   const reading = await secondsOf(async () => (numBytes = await read(name)));
-  let done;
-  const importing = await secondsOf(() => {
-    const args = ["-f", "%U %S %M", importer, path(name), "--out", path("out.lcm"), "--force"];
-    done = spawnSync("/usr/bin/time", args, { encoding: "utf8" });
-  });
-  if (done.status !== 0) throw new Error(done.stderr);
-  const [user, system, kilobytes] = done.stderr.trim().split("\n").at(-1).split(" ").map(Number);
+  const importing = run(importer, path(name), "--out", path("out.lcm"), "--force");
+  const copying = run("cp", path(name), path("copy"));
+  rmSync(path("copy"));
   const rates = ({ clock, core }) => [core, clock].map((s) => (numBytes / 1e6 / s).toFixed(0)).join(" MB a core's second, ") + " MB/s";
   console.log(
-    `${name}: ${(statSync(path(name)).size / 1e6).toFixed(0)} MB; read ${rates(reading)}; ` +
-      `imported ${rates({ ...importing, core: user + system })}; ${(kilobytes / 1024).toFixed(0)} MB of memory`,
+    `${name}: ${(statSync(path(name)).size / 1e6).toFixed(0)} MB; read ${rates(reading)}; imported ${rates(importing)}, ` +
+      `${importing.megabytes.toFixed(0)} MB of memory; copied ${rates(copying)}`,
   );
+  if (name !== "mcap") rmSync(path(name)); // which the last one is made of
 }

@@ -54,6 +54,39 @@ function vlp16Packets() {
   });
 }
 
+/** By RoboSense's manuals: 130 data packets, a block every 0.4 degrees, walls 5 m away. RS-LiDAR-16 and -32 look alike. */
+function robosensePackets() {
+  return Array.from({ length: 130 }, (_, i) => {
+    const bytes = Buffer.alloc(1248);
+    bytes.write("55aa050a5aa550a0", "hex");
+    const us = 1200 * i;
+    Buffer.from([20, 9, 13, 12, 26, 40, Math.floor(us / 1000) >> 8, Math.floor(us / 1000) & 255, (us % 1000) >> 8, us % 1000 & 255]).copy(bytes, 20);
+    for (let block = 0; block < 12; ++block) {
+      const at = 42 + 100 * block;
+      bytes.writeUInt16BE(0xffee, at);
+      bytes.writeUInt16BE((40 * (12 * i + block)) % 36000, at + 2);
+      for (let channel = 0; channel < 32; ++channel) {
+        bytes.writeUInt16BE(1000 + channel, at + 4 + 3 * channel);
+        bytes[at + 6 + 3 * channel] = channel;
+      }
+    }
+    return { timeUs: START_US + BigInt(us), bytes };
+  });
+}
+
+/** What the sensor says of itself (DIFOP): the strongest return; 32 lasers from 10 degrees down on, each 0.5 higher. */
+function robosenseState() {
+  const bytes = Buffer.alloc(1248);
+  bytes.write("a5ff005a11115555", "hex");
+  bytes[300] = 1;
+  for (let laser = 0; laser < 32; ++laser) {
+    const elevation = -1000 + 50 * laser;
+    bytes[468 + 3 * laser] = Number(elevation < 0);
+    bytes.writeUInt16BE(Math.abs(elevation), 469 + 3 * laser);
+  }
+  return { timeUs: START_US - 1000n, bytes };
+}
+
 function readPcap(file) {
   const all = readFileSync(file);
   const packets = [];
@@ -97,6 +130,8 @@ const SCANS = {
   "pandar_msgs/PandarScan": ({ timeUs, bytes }) => ({ stamp: stampOf(timeUs), data: padded(bytes, 1500), size: bytes.length }),
   "nebula_msgs/NebulaPackets": ({ timeUs, bytes }) => ({ stamp: stampOf(timeUs), data: bytes }),
   "hesai_ros_driver/UdpFrame": ({ bytes }) => ({ data: bytes, size: bytes.length }),
+  "robosense_msgs/RobosenseScan": ({ timeUs, bytes }) => ({ stamp: stampOf(timeUs), data: bytes, size: bytes.length }),
+  "rslidar_msgs/rslidarScan": ({ timeUs, bytes }) => ({ stamp: stampOf(timeUs), data: bytes }),
 };
 
 function scansOf(packets, type) {
@@ -117,6 +152,14 @@ const singles = (packets) =>
     logTimeNs: 1000n * timeUs,
     message: { buf: bytes },
   }));
+
+/** Messages of one packet each, as RoboSense's drivers record the sensor's state, and the newer one all packets. */
+const RS_SINGLES = {
+  "rslidar_msgs/rslidarPacket": ({ timeUs, bytes }) => ({ stamp: stampOf(timeUs), data: bytes }),
+  "rslidar_msg/RslidarPacket": ({ timeUs, bytes }) => ({ header: headerAt(timeUs), is_difop: bytes[0] === 0xa5, is_frame_begin: 0, data: bytes }),
+};
+const rsSingles = (packets, type, topic) =>
+  packets.map((packet) => ({ topic, type, logTimeNs: 1000n * packet.timeUs, message: RS_SINGLES[type](packet) }));
 
 const image = (timeNs) => ({
   topic: "/camera",
@@ -207,6 +250,41 @@ test("sweeps end where the rig file says", options, async () => {
   await writeMcap(path("e.mcap"), withImages(scansOf(vlp16Packets(), "velodyne_msgs/VelodyneScan")));
   const { sweeps } = imported(path("e.mcap"), "--rig", path("rig.yaml"));
   assert.deepEqual(sweeps, decoded(path("a.pcap"), "velodyne_vlp16", "90"));
+});
+
+for (const type of ["robosense_msgs/RobosenseScan", "rslidar_msgs/rslidarScan"]) {
+  test(`RoboSense's scans as ${type}: as decode_lidar`, options, async () => {
+    const packets = robosensePackets();
+    writePcap(path("rs.pcap"), packets);
+    const expected = decoded(path("rs.pcap"), "robosense_16");
+    assert.ok(expected.length >= 2 && pointsOf(expected).every((points) => points.length > 0));
+    await writeMcap(path("rs.mcap"), withImages(scansOf(packets, type)));
+    const model = ["--lidar-model", "robosense_16"]; // its packets are those of others too
+    assert.deepEqual(pointsOf(imported(path("rs.mcap"), ...model).sweeps), pointsOf(expected));
+    const database = path(`${type.split("/")[1]}.db3`);
+    writeDb3(database, withImages(scansOf(packets, type)));
+    assert.deepEqual(pointsOf(imported(database, ...model).sweeps), pointsOf(expected));
+  });
+}
+
+test("RoboSense's angles come from the topic of the sensor's state", options, async () => {
+  const packets = robosensePackets();
+  writePcap(path("rs32.pcap"), [robosenseState(), ...packets]);
+  const expected = pointsOf(decoded(path("rs32.pcap"), "robosense_32"));
+  assert.ok(expected.length >= 2 && expected.every((points) => points.length > 0));
+  const model = ["--lidar-model", "robosense_32"];
+  const scans = withImages(scansOf(packets, "rslidar_msgs/rslidarScan"));
+  const state = rsSingles([robosenseState()], "rslidar_msgs/rslidarPacket", "/rslidar_packets_difop");
+  await writeMcap(path("rs32.mcap"), [...state, ...scans]);
+  assert.deepEqual(pointsOf(imported(path("rs32.mcap"), ...model).sweeps), expected);
+});
+
+test("RoboSense's packets one by one, the sensor's state among them: as decode_lidar", options, async () => {
+  const packets = [robosenseState(), ...robosensePackets()];
+  const singles = rsSingles(packets, "rslidar_msg/RslidarPacket", "/rslidar_packets");
+  await writeMcap(path("rs32s.mcap"), withImages(singles));
+  const { sweeps } = imported(path("rs32s.mcap"), "--lidar-model", "robosense_32");
+  assert.deepEqual(pointsOf(sweeps), pointsOf(decoded(path("rs32.pcap"), "robosense_32")));
 });
 
 test("packets that cannot be decoded: one line, and no log", options, async () => {

@@ -2,7 +2,7 @@
 // follows the published format 2.0 of ROS 1 bags, the MCAP one is @mcap/core's own.
 
 import { execFileSync } from "node:child_process";
-import { writeFileSync } from "node:fs";
+import { closeSync, openSync, writeSync } from "node:fs";
 import { open } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
@@ -104,66 +104,99 @@ export function writeDb3(path, messages, pack = (bytes) => bytes) {
 }
 
 /**
- * A bag of one chunk, as rosbag writes it: bag header, chunk, its index, connections, chunk info; without what is behind
- * the chunk's index if `hasIndex` is false, as a recorder that is killed leaves it.
+ * A bag as rosbag writes it: bag header, chunks, each with its index behind it, connections, chunk infos. In one chunk, or in
+ * such of about `chunkBytes`; without what is behind the last chunk's index if `hasIndex` is false, as a recorder that is
+ * killed leaves it.
  */
-export function writeBag(path, messages, { hasIndex = true } = {}) {
+export function writeBag(path, messages, { hasIndex = true, chunkBytes = Infinity } = {}) {
   const connections = new Map();
-  const chunk = [];
-  let chunkBytes = 0;
-  const append = (record) => {
-    chunk.push(record);
-    chunkBytes += record.length;
-  };
+  const chunks = [];
   for (const { topic, type, logTimeNs, message } of messages) {
+    if (chunks.length === 0 || chunks.at(-1).numBytes >= chunkBytes) chunks.push(new BagChunk());
+    const chunk = chunks.at(-1);
     if (!connections.has(topic)) {
       const definitions = definitionsOf(ros1, type);
       const id = connections.size;
-      const connection = { id, record: connectionRecord(id, topic, type, definitions), index: [] };
-      connections.set(topic, { ...connection, writer: new Ros1Writer(definitions) });
-      append(connection.record);
+      connections.set(topic, { id, record: connectionRecord(id, topic, type, definitions), writer: new Ros1Writer(definitions) });
+      chunk.append(connections.get(topic).record);
     }
-    const { id, index, writer } = connections.get(topic);
-    index.push({ logTimeNs, offset: chunkBytes });
-    append(record({ op: u8(2), conn: u32(id), time: bagTime(logTimeNs) }, writer.writeMessage(message)));
+    const { id, writer } = connections.get(topic);
+    chunk.appendMessage(id, logTimeNs, writer.writeMessage(message));
   }
-  writeFileSync(path, Buffer.concat(bagRecords(chunk, chunkBytes, [...connections.values()], messages, hasIndex)));
+  writeBagFile(path, chunks, [...connections.values()], hasIndex);
 }
 
-function bagRecords(chunk, chunkBytes, connections, messages, hasIndex) {
+class BagChunk {
+  numBytes = 0;
+  #records = [];
+  #indices = new Map(); // connection -> {logTimeNs, offset} of its messages
+
+  append(bytes) {
+    this.#records.push(bytes);
+    this.numBytes += bytes.length;
+  }
+
+  appendMessage(connection, logTimeNs, bytes) {
+    if (!this.#indices.has(connection)) this.#indices.set(connection, []);
+    this.#indices.get(connection).push({ logTimeNs, offset: this.numBytes });
+    this.append(record({ op: u8(2), conn: u32(connection), time: bagTime(logTimeNs) }, bytes));
+  }
+
+  /** The chunk and its index. */
+  records() {
+    const data = record({ op: u8(5), compression: Buffer.from("none"), size: u32(this.numBytes) }, Buffer.concat(this.#records));
+    const indices = [...this.#indices].map(([connection, index]) =>
+      record(
+        { op: u8(4), ver: u32(1), conn: u32(connection), count: u32(index.length) },
+        Buffer.concat(index.flatMap(({ logTimeNs, offset }) => [bagTime(logTimeNs), u32(offset)])),
+      ),
+    );
+    return Buffer.concat([data, ...indices]);
+  }
+
+  info(position) {
+    const times = [...this.#indices.values()].flat().map(({ logTimeNs }) => logTimeNs);
+    const counts = [...this.#indices].flatMap(([connection, index]) => [u32(connection), u32(index.length)]);
+    return record(
+      {
+        op: u8(6),
+        ver: u32(1),
+        chunk_pos: u64(position),
+        start_time: bagTime(times[0]),
+        end_time: bagTime(times.at(-1)),
+        count: u32(this.#indices.size),
+      },
+      Buffer.concat(counts),
+    );
+  }
+}
+
+function writeBagFile(path, chunks, connections, hasIndex) {
   const magic = Buffer.from("#ROSBAG V2.0\n");
-  const chunkPosition = magic.length + 4096;
-  const chunkRecord = record(
-    { op: u8(5), compression: Buffer.from("none"), size: u32(chunkBytes) },
-    Buffer.concat(chunk),
-  );
-  const indices = connections.map(({ id, index }) =>
-    record(
-      { op: u8(4), ver: u32(1), conn: u32(id), count: u32(index.length) },
-      Buffer.concat(index.flatMap(({ logTimeNs, offset }) => [bagTime(logTimeNs), u32(offset)])),
-    ),
-  );
-  const numBytes = [chunkRecord, ...indices].reduce((sum, part) => sum + part.length, 0);
-  const counts = connections.flatMap(({ id, index }) => [u32(id), u32(index.length)]);
-  const info = record(
-    {
-      op: u8(6),
-      ver: u32(1),
-      chunk_pos: u64(chunkPosition),
-      start_time: bagTime(messages[0]?.logTimeNs ?? 0n),
-      end_time: bagTime(messages.at(-1)?.logTimeNs ?? 0n),
-      count: u32(connections.length),
-    },
-    Buffer.concat(counts),
-  );
-  const bagHeader = paddedHeader({
-    op: u8(3),
-    index_pos: u64(hasIndex ? chunkPosition + numBytes : 0),
-    conn_count: u32(hasIndex ? connections.length : 0),
-    chunk_count: u32(hasIndex ? 1 : 0),
-  });
-  if (!hasIndex) return [magic, bagHeader, chunkRecord, ...indices];
-  return [magic, bagHeader, chunkRecord, ...indices, ...connections.map((c) => c.record), info];
+  const header = (indexPosition) =>
+    paddedHeader({
+      op: u8(3),
+      index_pos: u64(indexPosition),
+      conn_count: u32(hasIndex ? connections.length : 0),
+      chunk_count: u32(hasIndex ? chunks.length : 0),
+    });
+  const file = openSync(path, "w");
+  let position = 0;
+  const write = (bytes) => (position += writeSync(file, bytes));
+  write(magic);
+  write(header(0));
+  const infos = [];
+  for (const chunk of chunks) {
+    infos.push(chunk.info(position));
+    write(chunk.records());
+  }
+  if (hasIndex) {
+    const indexPosition = position;
+    for (const { record: bytes } of connections) write(bytes);
+    for (const info of infos) write(info);
+    writeSync(file, header(indexPosition), 0, undefined, magic.length);
+  }
+  closeSync(file);
 }
 
 function connectionRecord(id, topic, type, definitions) {

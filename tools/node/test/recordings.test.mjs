@@ -2,11 +2,12 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, truncateSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { UserError } from "../lib/command.mjs";
 import { DamagedIndex } from "../lib/recordings/merged.mjs";
 import { openRecording } from "../lib/recordings/open.mjs";
 import { writeBag, writeDb3, writeMcap } from "./recording_writers.mjs";
@@ -214,6 +215,79 @@ test("bag, MCAP and sqlite3 give the same log, byte for byte", { skip: !hasPytho
   });
   for (const log of logs) assert.deepEqual(log, logs[0]);
 });
+
+test("a large bag without an index is not held whole to look for one", async () => {
+  const name = path("large.bag.active");
+  writeBag(name, messages, { hasIndex: false });
+  truncateSync(name, 1_500_000_000); // its end is a hole
+  const before = process.resourceUsage().maxRSS;
+  assert.deepEqual((await read([name])).found, expected);
+  assert.ok(process.resourceUsage().maxRSS - before < 500_000); // kB
+});
+
+// ---- Hostile variants ----------------------------------------------------------------------------------
+
+/** The same numbers from 0 to 1 each time. */
+function numbersFrom(seed) {
+  let state = seed;
+  return () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
+}
+
+/** Cut off, or with some bytes, a length's bytes or a stretch of it changed. */
+function hostile(bytes, next) {
+  const changed = Buffer.from(bytes);
+  const place = () => Math.floor(next() * changed.length);
+  switch (Math.floor(4 * next())) {
+    case 0:
+      return changed.subarray(0, place());
+    case 1:
+      for (let i = 0; i < 10; ++i) changed[place()] = 256 * next();
+      return changed;
+    case 2:
+      changed.writeUInt32LE(Math.floor(next() * 2 ** 32), Math.floor(next() * (changed.length - 4)));
+      return changed;
+    default:
+      return Buffer.concat([changed.subarray(0, place()), changed.subarray(place())]);
+  }
+}
+
+/** As import_ros does: by the index, then without it; its messages undecoded. @returns the error, if it is refused. */
+async function refusalOf(file) {
+  for (const isScanning of [false, true]) {
+    try {
+      const recording = await openRecording([file], folder, isScanning);
+      for await (const { data } of recording.messages(["/points", "/camera"])) assert.ok(data.length >= 0);
+      await recording.close();
+      return undefined;
+    } catch (error) {
+      if (!(error instanceof DamagedIndex)) return error;
+    }
+  }
+  return new Error("the scan looked at the index");
+}
+
+const WRITERS = {
+  "bags": (file) => writeBag(file, messages, { chunkBytes: 600 }),
+  "bags without index": (file) => writeBag(file, messages, { hasIndex: false, chunkBytes: 600 }),
+  "MCAP": (file) => writeMcap(file, messages, { chunkSize: 500 }),
+  "MCAP without chunks": (file) => writeMcap(file, messages, { useChunks: false }),
+};
+for (const [kind, write] of Object.entries(WRITERS)) {
+  test(`40 hostile variants of ${kind}: read, or refused in one line for people`, async () => {
+    const file = path("hostile");
+    await write(file);
+    const whole = readFileSync(file);
+    const next = numbersFrom(1);
+    for (let i = 0; i < 40; ++i) {
+      writeFileSync(file, hostile(whole, next));
+      const error = await refusalOf(file);
+      if (!error) continue;
+      assert.ok(error instanceof UserError, `variant ${i}: ${error.stack}`);
+      assert.match(error.message, /^[^\n]*hostile: [^\n]+$/);
+      assert.doesNotMatch(error.message, /undefined|null|NaN|not a function|BigInt|out of range|out of bounds/, `variant ${i}`);
+    }
+  });
+}
 
 test("a cut within a chunk: what of it came to the disk", async () => {
   for (const name of ["a.bag", "c.mcap"]) {

@@ -207,8 +207,14 @@ test("lenses by any name, coefficients of 0 left out", () => {
   assert.deepEqual(lens("rational_polynomial", [...R, 0, 0, 0, 0, 0, 0]), ["rational", ...R]);
   assert.deepEqual(lens("fisheye", [0.1, 0, 0, 0, 0]), ["equidistant", 0.1, 0, 0, 0, 0, 0, 0, 0]);
   assert.deepEqual(lens("", []), ["plumb_bob", 0, 0, 0, 0, 0, 0, 0, 0]);
+  for (const model of ["radtan", "radial-tangential", "pinhole", "brown_conrady"]) {
+    assert.deepEqual(lens(model, [1, 2, 3, 4]), ["plumb_bob", 1, 2, 3, 4, 0, 0, 0, 0]);
+  }
+  for (const model of ["equidistant", "kannala_brandt", "pinhole-equi"]) {
+    assert.deepEqual(lens(model, [1, 2, 3, 4]), ["equidistant", 1, 2, 3, 4, 0, 0, 0, 0]);
+  }
   assert.throws(() => lens("rational_polynomial", [...R, 0.001]), /no thin prism/);
-  assert.throws(() => lens("double_sphere", [0.1, 0.5]), /'double_sphere' is none of plumb_bob/);
+  assert.throws(() => lens("double_sphere", [0.1, 0.5]), /'double_sphere' is none of plumb_bob.*Kalibr: --models pinhole-radtan/);
 });
 
 test("cameras that are not calibrated", () => {

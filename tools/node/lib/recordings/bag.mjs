@@ -17,11 +17,12 @@ const nanoseconds = ({ sec, nsec }) => BigInt(sec) * 1_000_000_000n + BigInt(nse
 
 /** Opens by the index; undefined where the recorder left none. */
 export async function openIndexedBag(path) {
+  if (!hasIndex(path)) return undefined;
   const reader = new FileReader(path);
   try {
     const bag = new Bag(reader, { decompress: await loadDecompressHandlers(), parse: false });
     await bag.open();
-    if (bag.chunkInfos.length > 0) return indexedBag(bag, reader);
+    if (bag.chunkInfos.length > 0) return indexedBag(bag, reader, path);
   } catch {
     // The scan says what is wrong.
   }
@@ -29,7 +30,27 @@ export async function openIndexedBag(path) {
   return undefined;
 }
 
-function indexedBag(bag, reader) {
+/** Whether the bag's header tells of an index: without one, the library would hold the whole file to look for it. */
+function hasIndex(path) {
+  const file = new FileWindow(path, { isReused: true });
+  try {
+    const header = recordAt((from, length) => file.at(from, length), BAG_MAGIC.length);
+    const position = Number(header?.fields.index_pos?.readBigUInt64LE(0) ?? 0);
+    return position > 0 && position < file.numBytes;
+  } catch {
+    return false;
+  } finally {
+    file.close();
+  }
+}
+
+/** Whether the chunks lie in the file in the order of their times, none before the last one's end. */
+function isInOrder(chunkInfos) {
+  const byPlace = [...chunkInfos].sort((a, b) => a.chunkPosition - b.chunkPosition);
+  return byPlace.every(({ startTime }, i) => i === 0 || nanoseconds(startTime) >= nanoseconds(byPlace[i - 1].endTime));
+}
+
+function indexedBag(bag, reader, path) {
   const connections = new Connections();
   for (const [id, { topic, type, messageDefinition }] of bag.connections) {
     connections.add({ id, topic, type, definition: messageDefinition });
@@ -41,31 +62,46 @@ function indexedBag(bag, reader) {
     topics: connections.topics,
     startNs: nanoseconds(bag.startTime),
     isIndexed: true,
-    async *messages(names) {
-      for await (const { connectionId, timestamp, data } of bag.messageIterator({ topics: names })) {
-        yield connections.message(connectionId, nanoseconds(timestamp), data);
-      }
-    },
+    // Front to back where that is the order of time: twice as fast.
+    messages: (names) => (isInOrder(bag.chunkInfos) ? inFilesOrder(path, connections, names) : byIndex(bag, connections, names)),
     close: () => reader.close(),
   };
+}
+
+async function* byIndex(bag, connections, names) {
+  for await (const { connectionId, timestamp, data } of bag.messageIterator({ topics: names })) {
+    yield connections.message(connectionId, nanoseconds(timestamp), data);
+  }
+}
+
+/** @throws where there is damage, which the index knows nothing of. */
+async function* inFilesOrder(path, connections, names) {
+  const file = new FileWindow(path);
+  const remarks = [];
+  try {
+    const decompress = await loadDecompressHandlers();
+    for (const { id, logTimeNs, data } of scannedMessages(file, decompress, connections, remarks)) {
+      if (names.includes(connections.topicOf(id))) yield connections.message(id, logTimeNs, data);
+    }
+  } finally {
+    file.close();
+  }
+  if (remarks.length > 0) throw new Error(remarks.join("; "));
 }
 
 /** Reads what is there up to where the file ends or is damaged; a damaged chunk is left out. */
 export async function scanBag(path) {
   const decompress = await loadDecompressHandlers();
-  const file = new FileWindow(path);
   const connections = new Connections();
-  const part = {
-    topics: connections.topics,
-    startNs: undefined,
-    isIndexed: false,
-    remarks: [],
-    close: () => file.close(),
-  };
-  for (const { id, logTimeNs } of scannedMessages(file, decompress, connections, part.remarks)) {
+  const part = { topics: connections.topics, startNs: undefined, isIndexed: false, remarks: [] };
+  const counted = new FileWindow(path, { isReused: true });
+  for (const { id, logTimeNs } of scannedMessages(counted, decompress, connections, part.remarks)) {
     connections.count(id, 1);
     if (part.startNs === undefined || logTimeNs < part.startNs) part.startNs = logTimeNs;
   }
+  counted.close();
+  const file = new FileWindow(path);
+  part.close = () => file.close();
   part.messages = async function* messages(names) {
     for (const { id, logTimeNs, data } of scannedMessages(file, decompress, connections, [])) {
       if (names.includes(connections.topicOf(id))) yield connections.message(id, logTimeNs, data);
@@ -144,8 +180,14 @@ function* take({ op, fields, data }, at, connections, damage) {
   if (message && connections.topicOf(message.id) !== undefined) yield message;
 }
 
+function requireFields(fields, names) {
+  const missing = names.filter((name) => fields[name] === undefined);
+  if (missing.length > 0) throw new Error(`it has no ${missing.join(", ")}`);
+}
+
 function connectionOf(fields, data) {
-  const about = fieldsOf(data);
+  const about = fieldsOf(data) ?? {};
+  requireFields({ ...about, ...fields }, ["conn", "topic", "type", "message_definition"]);
   return {
     id: fields.conn.readUInt32LE(0),
     topic: fields.topic.toString(),
@@ -155,6 +197,7 @@ function connectionOf(fields, data) {
 }
 
 function messageOf(fields, data) {
+  requireFields(fields, ["conn", "time"]);
   const time = { sec: fields.time.readUInt32LE(0), nsec: fields.time.readUInt32LE(4) };
   return { id: fields.conn.readUInt32LE(0), logTimeNs: nanoseconds(time), data };
 }
@@ -182,7 +225,8 @@ function* chunkMessages({ fields, data }, offset, decompress, connections, damag
 function recordAt(bytesAt, at) {
   const headBytes = bytesAt(at, 4)?.readUInt32LE(0);
   if (headBytes === undefined) return undefined;
-  const fields = fieldsOf(bytesAt(at + 4, headBytes));
+  const head = bytesAt(at + 4, headBytes);
+  const fields = fieldsOf(head && Buffer.from(head)); // its place may be read anew for the data
   const dataBytes = bytesAt(at + 4 + headBytes, 4)?.readUInt32LE(0);
   if (fields?.op?.length !== 1 || dataBytes === undefined) return undefined;
   const data = bytesAt(at + 8 + headBytes, dataBytes);

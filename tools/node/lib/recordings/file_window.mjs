@@ -9,13 +9,16 @@ export class FileWindow {
   #file;
   #begin = 0;
   #bytes = Buffer.alloc(0);
+  #reused;
 
-  constructor(path) {
+  /** @param isReused  bytes hold until others are asked for: nothing is left to be collected. */
+  constructor(path, { isReused = false } = {}) {
     this.#file = openSync(path);
     this.numBytes = statSync(path).size;
+    if (isReused) this.#reused = Buffer.alloc(0);
   }
 
-  /** The bytes from `offset`, which may be kept; undefined where the file ends before them. */
+  /** The bytes from `offset`, which may be kept unless they are reused; undefined where the file ends before them. */
   at(offset, length) {
     if (offset + length > this.numBytes) return undefined;
     const isHeld = offset >= this.#begin && offset + length <= this.#begin + this.#bytes.length;
@@ -28,9 +31,9 @@ export class FileWindow {
     closeSync(this.#file);
   }
 
-  // Into new memory each time: parts of the old piece may be kept.
+  // Into new memory each time, where parts of the old piece may be kept.
   #read(offset, length) {
-    const bytes = Buffer.allocUnsafe(Math.min(length, this.numBytes - offset));
+    const bytes = this.#memory(Math.min(length, this.numBytes - offset));
     let done = 0;
     while (done < bytes.length) {
       const num = readSync(this.#file, bytes, done, bytes.length - done, offset + done);
@@ -39,5 +42,11 @@ export class FileWindow {
     }
     this.#begin = offset;
     this.#bytes = bytes.subarray(0, done);
+  }
+
+  #memory(length) {
+    if (!this.#reused) return Buffer.allocUnsafe(length);
+    if (this.#reused.length < length) this.#reused = Buffer.allocUnsafe(length);
+    return this.#reused.subarray(0, length);
   }
 }

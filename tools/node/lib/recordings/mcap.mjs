@@ -2,6 +2,7 @@
 
 import { open } from "node:fs/promises";
 import { createRequire } from "node:module";
+import zlib from "node:zlib";
 import { McapIndexedReader } from "@mcap/core";
 import { FileHandleReadable } from "@mcap/nodejs";
 import { loadDecompressHandlers } from "@mcap/support";
@@ -10,7 +11,8 @@ import { Damage } from "./damage.mjs";
 import { FileWindow } from "./file_window.mjs";
 import { plainType, ros1Decoder, ros2Decoder } from "./message_decoders.mjs";
 
-const { crc32 } = createRequire(import.meta.url)("@foxglove/crc");
+// Node.js' own from version 20.15 on is ten times as fast.
+const crc32 = zlib.crc32 ?? createRequire(import.meta.url)("@foxglove/crc").crc32;
 
 export const MCAP_MAGIC = Buffer.from("\x89MCAP0\r\n", "latin1");
 const MESSAGE_HEAD_BYTES = 22;
@@ -24,7 +26,7 @@ export async function openIndexedMcap(path) {
     const decompressHandlers = await loadDecompressHandlers();
     const readable = new FileHandleReadable(file);
     const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });
-    if (hasWholeIndex(reader)) return indexedMcap(reader, file);
+    if (hasWholeIndex(reader)) return indexedMcap(reader, file, path);
   } catch {
     // The scan says what is wrong.
   }
@@ -38,7 +40,13 @@ function hasWholeIndex({ chunkIndexes, channelsById, schemasById }) {
   return chunkIndexes.length > 0 && channels.length > 0 && channels.every(isKnown);
 }
 
-function indexedMcap(reader, file) {
+/** Whether the chunks lie in the file in the order of their times, none before the last one's end. */
+function isInOrder(chunkIndexes) {
+  const byPlace = [...chunkIndexes].sort((a, b) => Number(a.chunkStartOffset - b.chunkStartOffset));
+  return byPlace.every(({ messageStartTime }, i) => i === 0 || messageStartTime >= byPlace[i - 1].messageEndTime);
+}
+
+function indexedMcap(reader, file, path) {
   const counts = reader.statistics?.channelMessageCounts ?? new Map();
   const channels = new Channels();
   for (const schema of reader.schemasById.values()) channels.addSchema(schema);
@@ -52,31 +60,46 @@ function indexedMcap(reader, file) {
       reader.chunkIndexes[0].messageStartTime,
     ),
     isIndexed: true,
-    async *messages(names) {
-      for await (const { channelId, logTime, data } of reader.readMessages({ topics: names })) {
-        yield channels.message(channelId, logTime, data);
-      }
-    },
+    // Front to back where that is the order of time: twice as fast.
+    messages: (names) => (isInOrder(reader.chunkIndexes) ? inFilesOrder(path, channels, names) : byIndex(reader, channels, names)),
     close: () => file.close(),
   };
+}
+
+async function* byIndex(reader, channels, names) {
+  for await (const { channelId, logTime, data } of reader.readMessages({ topics: names })) {
+    yield channels.message(channelId, logTime, data);
+  }
+}
+
+/** @throws where there is damage, which the index knows nothing of. */
+async function* inFilesOrder(path, channels, names) {
+  const file = new FileWindow(path);
+  const remarks = [];
+  try {
+    const decompress = await loadDecompressHandlers();
+    for (const { channelId, logTime, data } of scannedMessages(file, decompress, channels, remarks, false)) {
+      if (names.includes(channels.topicOf(channelId))) yield channels.message(channelId, logTime, data);
+    }
+  } finally {
+    file.close();
+  }
+  if (remarks.length > 0) throw new Error(remarks.join("; "));
 }
 
 /** Reads what is there up to where the file ends or is damaged; a damaged chunk is left out. */
 export async function scanMcap(path) {
   const decompress = await loadDecompressHandlers();
-  const file = new FileWindow(path);
   const channels = new Channels();
-  const part = {
-    topics: channels.topics,
-    startNs: undefined,
-    isIndexed: false,
-    remarks: [],
-    close: () => file.close(),
-  };
-  for (const { channelId, logTime } of scannedMessages(file, decompress, channels, part.remarks, true)) {
+  const part = { topics: channels.topics, startNs: undefined, isIndexed: false, remarks: [] };
+  const counted = new FileWindow(path, { isReused: true });
+  for (const { channelId, logTime } of scannedMessages(counted, decompress, channels, part.remarks, true)) {
     channels.count(channelId);
     if (part.startNs === undefined || logTime < part.startNs) part.startNs = logTime;
   }
+  counted.close();
+  const file = new FileWindow(path);
+  part.close = () => file.close();
   part.messages = async function* messages(names) {
     for (const { channelId, logTime, data } of scannedMessages(file, decompress, channels, [], false)) {
       if (names.includes(channels.topicOf(channelId))) yield channels.message(channelId, logTime, data);
@@ -276,7 +299,7 @@ function schemaOf(bytes) {
   const name = text(bytes, 2);
   const encoding = text(bytes, name.end);
   const data = bytes.subarray(encoding.end + 4, encoding.end + 4 + bytes.readUInt32LE(encoding.end));
-  return { id: bytes.readUInt16LE(0), name: name.value, encoding: encoding.value, data };
+  return { id: bytes.readUInt16LE(0), name: name.value, encoding: encoding.value, data: Buffer.from(data) };
 }
 
 function channelOf(bytes) {

@@ -3,14 +3,23 @@
 
 import { UserError } from "../command.mjs";
 
-// By name in small letters, of ROS and of its tools: the lens by us (core/camera/camera_model.hpp).
+// By name in small letters, of ROS, OpenCV and Kalibr: the lens by us (as core/camera/named_lens.cpp).
 const LENSES = {
   plumb_bob: "plumb_bob",
   radtan: "plumb_bob",
+  "radial-tangential": "plumb_bob",
+  radial_tangential: "plumb_bob",
+  brown_conrady: "plumb_bob",
+  pinhole: "plumb_bob",
+  "pinhole-radtan": "plumb_bob",
+  none: "plumb_bob",
   rational_polynomial: "rational",
   rational: "rational",
   equidistant: "equidistant",
+  equi: "equidistant",
+  "pinhole-equi": "equidistant",
   fisheye: "equidistant",
+  kannala_brandt: "equidistant",
   kannala_brandt4: "equidistant",
 };
 const NUM_COEFFICIENTS = { plumb_bob: 5, rational: 8, equidistant: 4 };
@@ -35,14 +44,13 @@ function lensOf(message) {
   const d = given.slice(0, given.findLastIndex((value) => value !== 0) + 1);
   if (!d.every(Number.isFinite)) throw new UserError(`CameraInfo's distortion is [${given.join(", ")}]`);
   const model = message.distortion_model.trim().toLowerCase();
-  const isUnnamed = model === "" || model === "none";
-  const named = isUnnamed ? "plumb_bob" : LENSES[model];
+  const named = LENSES[model || "none"];
   // Five coefficients and three more are the rational lens, however it is called: OpenCV's order.
   const lens_model = named === "plumb_bob" && d.length > 5 ? "rational" : named;
   if (lens_model === undefined) {
     throw new UserError(
       `CameraInfo's distortion_model '${message.distortion_model}' is none of ${Object.keys(LENSES).join(", ")}: ` +
-        "calibrate the camera with one of these, or rectify the images",
+        "calibrate the camera with one of these (Kalibr: --models pinhole-radtan or pinhole-equi), or rectify the images",
     );
   }
   if (d.length > NUM_COEFFICIENTS[lens_model]) {

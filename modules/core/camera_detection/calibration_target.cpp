@@ -2,13 +2,15 @@
 
 #include <stdexcept>
 
+#include "core/camera_detection/aprilgrid_target.hpp"
 #include "core/camera_detection/charuco_target.hpp"
 #include "core/camera_detection/chessboard_target.hpp"
 
 namespace voqcal {
 
 const std::vector<const CalibrationTarget*>& CalibrationTargets() {
-  static const std::vector<const CalibrationTarget*> kTargets = {&Chessboard(), &Charuco()};
+  static const std::vector<const CalibrationTarget*> kTargets = {
+      &Chessboard(), &Charuco(), &AprilGrid()};
   return kTargets;
 }
 

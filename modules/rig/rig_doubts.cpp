@@ -63,7 +63,8 @@ std::string WhyTooLarge(BoardSpec board) {
   if (IsPatternOnPlate(board)) return "are pattern_offset_x_m and _y_m right?";
   std::swap(board.width_m, board.height_m);
   if (IsPatternOnPlate(board)) return "are x and y (or width_m and height_m) swapped?";
-  return "are corners counted, not squares, and is square_m right?";
+  return "are corners counted, not squares (tags, of a grid of tags), and is " + SideKeyOf(board) +
+         " right?";
 }
 
 void DoubtPattern(const BoardSpec& board, Lines* lines) {
@@ -71,8 +72,9 @@ void DoubtPattern(const BoardSpec& board, Lines* lines) {
   const PrintedPattern printed = TargetOf(board).print(board);
   const auto span_m = [](const std::vector<double>& at_m) { return at_m.back() - at_m.front(); };
   lines->push_back(
-      Format("board.square_m is %.6g: the pattern, %.4g x %.4g m, sticks out of the board, %.4g x "
+      Format("board.%s is %.6g: the pattern, %.4g x %.4g m, sticks out of the board, %.4g x "
              "%.4g m (width x height): ",
+             SideKeyOf(board).c_str(),
              board.square_m,
              span_m(printed.x_lines_m),
              span_m(printed.y_lines_m),
@@ -204,7 +206,7 @@ std::vector<std::string> BoardDoubts(const BoardSpec& board) {
   Lines lines;
   DoubtLength("width_m", board.width_m, 0.1, 5, &lines);
   DoubtLength("height_m", board.height_m, 0.1, 5, &lines);
-  DoubtLength("square_m", board.square_m, 0.01, 1, &lines);
+  DoubtLength(SideKeyOf(board).c_str(), board.square_m, 0.01, 1, &lines);
   DoubtPattern(board, &lines);
   return lines;
 }

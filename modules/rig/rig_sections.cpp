@@ -78,10 +78,12 @@ void ReadBoard(YamlSection* top, BoardSpec* board) {
   section.ReadRequired("height_m", &board->height_m);
   section.Read("pattern_offset_x_m", &board->pattern_offset_x_m);
   section.Read("pattern_offset_y_m", &board->pattern_offset_y_m);
-  section.Read("pattern", &board->pattern);
+  const char* pattern =
+      section.Has("target_type") ? "target_type" : "pattern";  // Kalibr's and ours
+  section.Read(pattern, &board->pattern);
   const CalibrationTarget* target = FindCalibrationTarget(board->pattern);
   if (target == nullptr) {
-    return section.AddError("pattern", "must be one of " + CalibrationTargetNames());
+    return section.AddError(pattern, "must be one of " + CalibrationTargetNames());
   }
   for (const TargetKey& key : target->keys) ReadTargetKey(key, &section, board);
   if (section.IsComplete()) section.AddProblems(BoardProblems(*board));

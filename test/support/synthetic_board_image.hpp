@@ -9,47 +9,19 @@
 
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
-#include "core/camera_detection/charuco_corners.hpp"
+#include "core/simulation/board_prop.hpp"
 
 namespace voqcal::test {
 
-/// The printed face of a board: how bright it is where.
-class PrintedFace {
- public:
-  explicit PrintedFace(const BoardSpec& board)
-      : board_(board), first_corner_m_(board.InnerCornersBoardM().front().head<2>()) {
-    if (board.pattern == "charuco") charuco_ = DrawCharuco(board, kPixelsPerSquare);
-  }
-
-  /// Nothing beyond the outline.
-  std::optional<double> BrightnessAt(const Eigen::Vector2d& at_board_m) const {
-    if (std::abs(at_board_m.x()) > board_.width_m / 2) return {};
-    if (std::abs(at_board_m.y()) > board_.height_m / 2) return {};
-    // In squares from the pattern's lower left corner.
-    const Eigen::Vector2d at =
-        (at_board_m - first_corner_m_) / board_.square_m + Eigen::Vector2d::Ones();
-    const int num_x = board_.num_corners_x + 1;
-    const int num_y = board_.num_corners_y + 1;
-    const bool is_pattern = at.x() >= 0 && at.y() >= 0 && at.x() < num_x && at.y() < num_y;
-    if (!is_pattern) return kBright;
-    if (!charuco_.empty()) {
-      const auto x = static_cast<int>(at.x() * kPixelsPerSquare);
-      const auto y = static_cast<int>((num_y - at.y()) * kPixelsPerSquare);
-      const bool is_dark = charuco_.at<unsigned char>(std::min(y, charuco_.rows - 1), x) < 128;
-      return is_dark ? kDark : kBright;
-    }
-    return (static_cast<int>(at.x()) + static_cast<int>(at.y())) % 2 == 0 ? kDark : kBright;
-  }
-
- private:
-  static constexpr double kDark = 30;
-  static constexpr double kBright = 220;
-  static constexpr int kPixelsPerSquare = 140;  // a multiple of 7 cells, and of 10 to a square
-
-  BoardSpec board_;
-  Eigen::Vector2d first_corner_m_;
-  cv::Mat charuco_;
-};
+/// How bright a printed board is where; nothing beyond its outline.
+inline std::optional<double> BrightnessOf(const BoardFace& face,
+                                          const Eigen::Vector2d& at_board_m) {
+  constexpr double kDark = 30;
+  constexpr double kBright = 220;
+  const int cell = face.CellAt(at_board_m.x(), at_board_m.y());
+  if (face.IsOutside(cell)) return {};
+  return face.IsDark(cell) ? kDark : kBright;
+}
 
 /// Where the board may be in the image: its outline's surroundings, or all of it where the lens
 /// does not say.
@@ -123,14 +95,14 @@ cv::Mat RenderFace(const CameraModel& camera,
   return image;
 }
 
-/// The same of a printed chessboard or ChArUco board, by 4 x 4 rays. The square of a chessboard
-/// next to the corner (0, 0) towards -x, -y is black.
+/// The same of a printed board, by 4 x 4 rays. The square of a chessboard next to the corner (0, 0)
+/// towards -x, -y is black.
 inline cv::Mat RenderBoard(const CameraModel& camera,
                            const BoardSpec& board,
                            const Eigen::Isometry3d& T_camera_board) {
-  const PrintedFace face(board);
+  const BoardFace face(board);
   return RenderFace(camera, board, T_camera_board, 4, [&](const Eigen::Vector2d& at_board_m) {
-    return face.BrightnessAt(at_board_m);
+    return BrightnessOf(face, at_board_m);
   });
 }
 

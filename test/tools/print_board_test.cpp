@@ -50,6 +50,16 @@ BoardSpec SmallCharuco() {
   return board;
 }
 
+BoardSpec SmallAprilGrid() {
+  BoardSpec board = SmallChessboard();
+  board.pattern = "aprilgrid";
+  board.square_m = 0.043;
+  board.gap_squares = 0.3;
+  board.num_corners_x = 2 * 4;
+  board.num_corners_y = 2 * 3;
+  return board;
+}
+
 /// A PDF, of which pdftoppm (poppler-utils) renders parts.
 class Pages {
  public:
@@ -140,6 +150,7 @@ double LargestErrorMm(const BoardSpec& board, const std::string& paper) {
 TEST(PrintBoard, EveryCornerIsWhereItBelongs) {
   EXPECT_LT(LargestErrorMm(SmallChessboard(), "a4"), 0.1);
   EXPECT_LT(LargestErrorMm(SmallCharuco(), "whole"), 0.1);
+  EXPECT_LT(LargestErrorMm(SmallAprilGrid(), "whole"), 0.1);
 }
 
 TEST(PrintBoard, CropMarksAndRulerAreTrueToScale) {
@@ -198,7 +209,7 @@ TEST(PlanSheets, RefusesABoardInMillimetres) {
 
 TEST(BoardSectionLines, AreReadBackAsTheSameBoard) {
   const test::TemporaryFolder folder;
-  for (const BoardSpec& board : {SmallChessboard(), SmallCharuco()}) {
+  for (const BoardSpec& board : {SmallChessboard(), SmallCharuco(), SmallAprilGrid()}) {
     std::string text =
         "rig: test\ncamera: {lens_model: plumb_bob, width_px: 640, height_px: 480, fx_px: 500, "
         "fy_px: 500, cx_px: 320, cy_px: 240, distortion: [0, 0, 0, 0, 0]}\n";

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/tool_main.hpp"
+#include "core/camera_detection/calibration_target.hpp"
 #include "rig/frame_pairing.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_doubts.hpp"
@@ -42,12 +43,14 @@ std::string CameraSourceOf(const Rig& rig) {
 void PrintRig(const Rig& rig) {
   std::printf("rig        %s\n", rig.name.c_str());
   std::printf("lcm_url    %s\n", rig.lcm_url.c_str());
-  std::printf("board      %.3f x %.3f m, %d x %d inner corners of %.1f mm squares\n",
+  std::printf("board      %.3f x %.3f m, %s of %d x %d corners, %s %.4g\n",
               rig.board.width_m,
               rig.board.height_m,
+              rig.board.pattern.c_str(),
               rig.board.num_corners_x,
               rig.board.num_corners_y,
-              1e3 * rig.board.square_m);
+              SideKeyOf(rig.board).c_str(),
+              rig.board.square_m);
   std::printf("camera     %s, %d x %d px, fx %.1f fy %.1f px\n",
               ToString(rig.camera.lens).c_str(),
               rig.camera.width_px,

@@ -117,7 +117,8 @@ std::vector<std::string> Notes(const BoardSpec& board, const SheetPlan& plan) {
                          board.width_m,
                          board.height_m));
   add(WhatIsUp(board));
-  lines.emplace_back("6. Measure the plate and a long row of squares, and correct the rig file:");
+  lines.emplace_back(
+      "6. Measure the plate and a long row of squares or tags, and correct the rig file:");
   return lines;
 }
 
@@ -216,11 +217,12 @@ void DrawTilePage(const std::vector<RectangleMm>& dark,
 }
 
 std::string Title(const BoardSpec& board, const std::string& name) {
-  return Format("%s: %s, %.4g x %.4g m, square_m %.4g",
+  return Format("%s: %s, %.4g x %.4g m, %s %.4g",
                 name.c_str(),
                 board.pattern.c_str(),
                 board.width_m,
                 board.height_m,
+                SideKeyOf(board).c_str(),
                 board.square_m);
 }
 

@@ -72,6 +72,7 @@ Json RigPart(const Rig& rig) {
           {"board",
            {{"width_m", board.width_m},
             {"height_m", board.height_m},
+            {"pattern", board.pattern},
             {"square_m", board.square_m},
             {"num_corners_x", board.num_corners_x},
             {"num_corners_y", board.num_corners_y}}},

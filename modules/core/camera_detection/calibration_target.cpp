@@ -1,14 +1,17 @@
 #include "core/camera_detection/calibration_target.hpp"
 
 #include <stdexcept>
+#include <variant>
 
+#include "core/camera_detection/aprilgrid_target.hpp"
 #include "core/camera_detection/charuco_target.hpp"
 #include "core/camera_detection/chessboard_target.hpp"
 
 namespace voqcal {
 
 const std::vector<const CalibrationTarget*>& CalibrationTargets() {
-  static const std::vector<const CalibrationTarget*> kTargets = {&Chessboard(), &Charuco()};
+  static const std::vector<const CalibrationTarget*> kTargets = {
+      &Chessboard(), &Charuco(), &AprilGrid()};
   return kTargets;
 }
 
@@ -32,6 +35,14 @@ const CalibrationTarget& TargetOf(const BoardSpec& board) {
   if (target != nullptr) return *target;
   throw std::invalid_argument("pattern must be one of " + CalibrationTargetNames() + ", is " +
                               board.pattern);
+}
+
+std::string SideKeyOf(const BoardSpec& board) {
+  for (const TargetKey& key : TargetOf(board).keys) {
+    const auto* field = std::get_if<double BoardSpec::*>(&key.field);
+    if (field != nullptr && *field == &BoardSpec::square_m) return key.name;
+  }
+  throw std::logic_error("no key for the side of what is printed: " + board.pattern);
 }
 
 std::vector<std::string> BoardProblems(const BoardSpec& board) {

@@ -48,7 +48,7 @@ struct CalibrationTarget {
 
 const std::vector<const CalibrationTarget*>& CalibrationTargets();
 
-/// "chessboard, charuco".
+/// "chessboard, charuco, aprilgrid".
 std::string CalibrationTargetNames();
 
 /// Null for an unknown name.
@@ -56,6 +56,9 @@ const CalibrationTarget* FindCalibrationTarget(const std::string& name);
 
 /// @throws std::invalid_argument if there is no such pattern.
 const CalibrationTarget& TargetOf(const BoardSpec& board);
+
+/// What the rig file calls BoardSpec::square_m: "square_m", or "tagSize".
+std::string SideKeyOf(const BoardSpec& board);
 
 /// One line for each broken constraint, the pattern's own included.
 std::vector<std::string> BoardProblems(const BoardSpec& board);

@@ -50,7 +50,7 @@ CharucoCorners CornersBetween(const Markers& markers,
     const double rim_squares = (1 - board.marker_m / board.square_m) / 2;
     const auto corner = RefinedCorner(grey, near[n], step_x, step_y, rim_squares);
     if (!corner) continue;
-    kept.corners_px.push_back(*corner);
+    kept.corners_px.emplace_back(static_cast<float>(corner->x()), static_cast<float>(corner->y()));
     kept.ids.push_back(near_ids[n]);
   }
   return kept;

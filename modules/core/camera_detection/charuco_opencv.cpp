@@ -29,28 +29,23 @@ cv::Ptr<cv::aruco::CharucoBoard> BoardOf(const CharucoLayout& layout) {
 
 }  // namespace
 
-Markers DetectMarkers(const cv::Mat& grey, int dictionary, int border_cells) {
+Markers DetectMarkers(const cv::Mat& grey, int dictionary) {
   Markers found;
   std::vector<std::vector<cv::Point2f>> rejected;
-  const auto parameters = cv::aruco::DetectorParameters::create();
-  parameters->markerBorderBits = border_cells;
   cv::aruco::detectMarkers(grey,
                            cv::aruco::getPredefinedDictionary(dictionary),
                            found.corners_px,
                            found.ids,
-                           parameters,
+                           cv::aruco::DetectorParameters::create(),
                            rejected);
   found.num_rejected = static_cast<int>(rejected.size());
   return found;
 }
 
-cv::Mat DrawMarker(int dictionary, int id, int num_cells_with_border, int border_cells) {
+cv::Mat DrawMarker(int dictionary, int id, int num_cells_with_border) {
   cv::Mat image;
-  cv::aruco::drawMarker(cv::aruco::getPredefinedDictionary(dictionary),
-                        id,
-                        num_cells_with_border,
-                        image,
-                        border_cells);
+  cv::aruco::drawMarker(
+      cv::aruco::getPredefinedDictionary(dictionary), id, num_cells_with_border, image);
   return image;
 }
 
@@ -89,25 +84,19 @@ cv::aruco::CharucoBoard BoardOf(const CharucoLayout& layout) {
 
 }  // namespace
 
-Markers DetectMarkers(const cv::Mat& grey, int dictionary, int border_cells) {
+Markers DetectMarkers(const cv::Mat& grey, int dictionary) {
   Markers found;
   std::vector<std::vector<cv::Point2f>> rejected;
-  cv::aruco::DetectorParameters parameters;
-  parameters.markerBorderBits = border_cells;
-  const cv::aruco::ArucoDetector detector(cv::aruco::getPredefinedDictionary(dictionary),
-                                          parameters);
+  const cv::aruco::ArucoDetector detector(cv::aruco::getPredefinedDictionary(dictionary));
   detector.detectMarkers(grey, found.corners_px, found.ids, rejected);
   found.num_rejected = static_cast<int>(rejected.size());
   return found;
 }
 
-cv::Mat DrawMarker(int dictionary, int id, int num_cells_with_border, int border_cells) {
+cv::Mat DrawMarker(int dictionary, int id, int num_cells_with_border) {
   cv::Mat image;
-  cv::aruco::generateImageMarker(cv::aruco::getPredefinedDictionary(dictionary),
-                                 id,
-                                 num_cells_with_border,
-                                 image,
-                                 border_cells);
+  cv::aruco::generateImageMarker(
+      cv::aruco::getPredefinedDictionary(dictionary), id, num_cells_with_border, image);
   return image;
 }
 

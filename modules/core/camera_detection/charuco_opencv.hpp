@@ -30,12 +30,12 @@ struct CharucoCorners {
   std::vector<int> ids;  ///< Row by row, from the top left of the print.
 };
 
-/// @param dictionary    OpenCV's number of it.
-/// @param border_cells  how wide the dark border is.
-Markers DetectMarkers(const cv::Mat& grey, int dictionary, int border_cells = 1);
+/// @param dictionary  OpenCV's number of it.
+Markers DetectMarkers(const cv::Mat& grey, int dictionary);
 
-/// A marker as it is printed, upright, without margin: 8-bit, 1 channel, a pixel to a cell.
-cv::Mat DrawMarker(int dictionary, int id, int num_cells_with_border, int border_cells);
+/// A marker as OpenCV prints it, upright, its border one cell wide, without margin: 8-bit, 1
+/// channel, a pixel to a cell.
+cv::Mat DrawMarker(int dictionary, int id, int num_cells_with_border);
 
 /// @param markers  As DetectMarkers found them in `grey`; at least one.
 CharucoCorners CornersBesideMarkers(const cv::Mat& grey,

@@ -4,9 +4,9 @@
 #include <string>
 
 #include <Eigen/SVD>
-#include <opencv2/imgproc.hpp>
 
 #include "core/camera_detection/missing_corners.hpp"
+#include "core/camera_detection/x_corner_fit.hpp"
 
 namespace voqcal {
 namespace {
@@ -24,29 +24,27 @@ bool IsPlanar(const std::vector<Eigen::Vector3d>& seen_board_m, double square_m)
 
 }  // namespace
 
-std::optional<cv::Point2f> RefinedCorner(const cv::Mat& grey,
-                                         const cv::Point2f& near_px,
-                                         const cv::Point2f& step_x_px,
-                                         const cv::Point2f& step_y_px,
-                                         double rim_squares) {
-  constexpr double kMaxShiftSquares = 0.1;
-  const double side_px = std::min(cv::norm(step_x_px), cv::norm(step_y_px));
-  const int half_window_px = std::clamp(static_cast<int>(rim_squares * side_px), 2, 30);
-  std::vector<cv::Point2f> corner{near_px};
-  try {
-    cv::cornerSubPix(grey,
-                     corner,
-                     {half_window_px, half_window_px},
-                     {-1, -1},
-                     {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 40, 1e-4});
-  } catch (const cv::Exception&) {
-    return {};  // too near to the image's border
-  }
-  if (cv::norm(corner[0] - near_px) > std::max(1.0, kMaxShiftSquares * side_px)) return {};
+std::optional<Eigen::Vector2d> RefinedCorner(const cv::Mat& grey,
+                                             const cv::Point2f& near_px,
+                                             const cv::Point2f& step_x_px,
+                                             const cv::Point2f& step_y_px,
+                                             double rim_squares) {
+  const auto reach = [&](const cv::Point2f& step_px) -> Eigen::Vector2d {
+    constexpr double kShareOfRim = 0.8;  // blur brings the edge beyond nearer
+    constexpr double kMinPx = 2;
+    constexpr double kMaxPx = 7;  // lenses bend edges: 15 px of one by 0.02 px in a wide view
+    const double length_px = cv::norm(step_px);
+    const double reach_px = std::clamp(kShareOfRim * rim_squares * length_px, kMinPx, kMaxPx);
+    return Eigen::Vector2d(step_px.x, step_px.y) * (reach_px / length_px);
+  };
+  const auto corner_px =
+      FitXCorner(grey, {{near_px.x, near_px.y}, reach(step_x_px), reach(step_y_px)});
+  if (!corner_px) return {};
   // A quarter of these steps is in the middle of the rim.
   const auto rim = static_cast<float>(2 * rim_squares);
-  if (QuarterContrast(grey, corner[0], rim * step_x_px, rim * step_y_px) == 0) return {};
-  return corner[0];
+  const cv::Point2f at_px(static_cast<float>(corner_px->x()), static_cast<float>(corner_px->y()));
+  if (QuarterContrast(grey, at_px, rim * step_x_px, rim * step_y_px) == 0) return {};
+  return corner_px;
 }
 
 Expected<std::vector<Eigen::Vector2d>, CameraBoardMiss> EnoughCorners(

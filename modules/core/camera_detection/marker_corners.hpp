@@ -18,11 +18,11 @@ namespace voqcal {
 ///
 /// @param step_x_px, step_y_px  the sides of the square or tag at that corner.
 /// @param rim_squares           as far as this share of them the quarters are of one shade.
-std::optional<cv::Point2f> RefinedCorner(const cv::Mat& grey,
-                                         const cv::Point2f& near_px,
-                                         const cv::Point2f& step_x_px,
-                                         const cv::Point2f& step_y_px,
-                                         double rim_squares);
+std::optional<Eigen::Vector2d> RefinedCorner(const cv::Mat& grey,
+                                             const cv::Point2f& near_px,
+                                             const cv::Point2f& step_x_px,
+                                             const cv::Point2f& step_y_px,
+                                             double rim_squares);
 
 /// The corners if they fix a pose: at least 6, not all on a line.
 ///

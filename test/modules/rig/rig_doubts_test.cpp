@@ -55,6 +55,16 @@ TEST(BoardDoubts, NamesAnotherUnit) {
                           HasSubstr("in centimetres? Then give 0.626")));
 }
 
+TEST(BoardDoubts, NamesTheKeysOfThePattern) {
+  BoardSpec board = UsualBoard();
+  board.pattern = "aprilgrid";
+  board.square_m = 88;
+  board.num_corners_x = board.num_corners_y = 12;
+  EXPECT_THAT(BoardDoubts(board),
+              ElementsAre(HasSubstr("board.tagSize is 88: it is in metres"),
+                          HasSubstr("board.tagSize is 88: the pattern")));
+}
+
 TEST(BoardDoubts, NamesWhyThePatternSticksOut) {
   BoardSpec board = UsualBoard();
   std::swap(board.width_m, board.height_m);

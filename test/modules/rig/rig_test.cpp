@@ -196,6 +196,28 @@ TEST(LoadRig, NamesWhatIsMissing) {
             "rig.yaml:4: board.height_m is missing");
 }
 
+TEST(LoadRig, ReadsTheLinesOfKalibrsFileAsTheyAre) {
+  const std::string kalibr =
+      "board:\n  width_m: 0.9\n  height_m: 0.9\n"
+      "  target_type: 'aprilgrid' #gridtype\n"
+      "  tagCols: 6               #number of apriltags\n"
+      "  tagRows: 5               #number of apriltags\n"
+      "  tagSize: 0.088           #size of apriltag, edge to edge [m]\n"
+      "  tagSpacing: 0.3          #ratio of space between tags to tagSize\n";
+  const Rig rig = Load(kHead + kalibr + kCamera);
+  EXPECT_EQ(rig.board.pattern, "aprilgrid");
+  EXPECT_EQ(rig.board.num_corners_x, 12);
+  EXPECT_EQ(rig.board.num_corners_y, 10);
+  EXPECT_EQ(rig.board.square_m, 0.088);
+  EXPECT_EQ(rig.board.gap_squares, 0.3);
+
+  std::string other = kalibr;
+  other.replace(other.find("'aprilgrid'"), 11, "circlegrid ");
+  EXPECT_THAT(LoadError(kHead + other + kCamera),
+              HasSubstr("rig.yaml:5: board.target_type must be one of chessboard, charuco, "
+                        "aprilgrid, is \"circlegrid\""));
+}
+
 TEST(LoadRig, WantsTheLensModelsOwnNumberOfCoefficients) {
   std::string text = Minimal();
   text.replace(text.find("plumb_bob"), 9, "equidistant");

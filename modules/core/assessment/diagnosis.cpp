@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/assessment/fault_model.hpp"
+#include "core/assessment/judge_questions.hpp"
 #include "core/assessment/nested_models.hpp"
 #include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
@@ -59,6 +60,7 @@ void JudgeRangeOffset(const BiasEstimate& range_offset,
   finding.value = 1e3 * range_offset.value_m;
   finding.standard_error = 1e3 * range_offset.standard_error_m;
   finding.unit = "mm";
+  finding.must_be_mended = true;
   finding.text = Format(
       "%.0f +- %.0f mm were taken out of the lidar's ranges, more than lidars err: squares or a "
       "focal length given too %s look the same; check board.square_m, camera.fx_px and fy_px",
@@ -76,7 +78,7 @@ void JudgeInconsistent(int num_inconsistent, std::size_t num_used, Diagnosis* di
   finding.value = num_inconsistent;
   finding.text = Format(
       "%d of %zu samples contradict the others: the board moved, or something else was taken for "
-      "it; they were left out, nothing is to be done",
+      "it; they were left out",
       num_inconsistent,
       num_used + static_cast<std::size_t>(num_inconsistent));
   diagnosis->findings.push_back(finding);
@@ -134,54 +136,112 @@ void JudgePoses(const std::vector<const BoardSample*>& samples,
   }
 }
 
-// The outline against its edges as the lidar measures them freely.
+// By how much edges are given longer than the lidar measures them freely.
+struct EdgeErrors {
+  double sum_m = 0;
+  double sum_m2 = 0;
+  int num = 0;
+
+  void Add(double error_m) {
+    if (std::isnan(error_m)) return;  // an open edge says nothing of the size
+    sum_m += error_m;
+    sum_m2 += error_m * error_m;
+    ++num;
+  }
+  double MeanM() const { return sum_m / num; }
+  double VarianceM2() const { return std::max(1e-12, sum_m2 / num - MeanM() * MeanM()); }
+  double StandardErrorM() const { return std::sqrt(VarianceM2() / num); }
+  double Gain() const { return 0.5 * num * std::log1p(MeanM() * MeanM() / VarianceM2()); }
+};
+
+Finding OutlineFinding(const char* cause, const EdgeErrors& errors) {
+  Finding finding;
+  finding.cause = cause;
+  finding.must_be_mended = true;
+  finding.value = 1e3 * errors.MeanM();
+  finding.standard_error = 1e3 * errors.StandardErrorM();
+  finding.unit = "mm";
+  finding.log_likelihood_gain = errors.Gain();
+  finding.explained =
+      std::pow(errors.MeanM(), 2) / (std::pow(errors.MeanM(), 2) + errors.VarianceM2());
+  return finding;
+}
+
+std::string GivenTooLong(const EdgeErrors& errors) {
+  return Format("%.0f +- %.0f mm %s than the lidar measures",
+                1e3 * std::abs(errors.MeanM()),
+                1e3 * errors.StandardErrorM(),
+                errors.MeanM() > 0 ? "longer" : "shorter");
+}
+
+// The outline against its edges as the lidar measures them freely: all of them, and the width
+// against the height.
 void JudgeOutline(const std::vector<const BoardSample*>& samples,
                   const BoardSpec& board,
                   const DiagnosisOptions& options,
                   Diagnosis* diagnosis) {
   const auto true_lengths_m = board.EdgeLengthsM();
-  double sum_m = 0;
-  double sum_m2 = 0;
-  int num_edges = 0;
+  EdgeErrors all;
+  EdgeErrors widths;
+  EdgeErrors heights;
   for (const BoardSample* sample : samples) {
     for (std::size_t i = 0; i < true_lengths_m.size(); ++i) {
       const double error_m = true_lengths_m[i] - sample->lidar.edge_lengths_m[i];
-      if (std::isnan(error_m)) continue;  // an open edge says nothing of the size
-      sum_m += error_m;
-      sum_m2 += error_m * error_m;
-      ++num_edges;
+      all.Add(error_m);
+      (i % 2 == 0 ? widths : heights).Add(error_m);
     }
   }
-  if (num_edges == 0) return;
-  const double mean_m = sum_m / num_edges;
-  const double variance_m2 = std::max(1e-12, sum_m2 / num_edges - mean_m * mean_m);
-  const double error_m = std::sqrt(variance_m2 / num_edges);
-  const double gain = 0.5 * num_edges * std::log1p(mean_m * mean_m / variance_m2);
-  if (std::abs(mean_m) < options.min_edge_error_m || gain < options.min_log_likelihood_gain) return;
-  Finding finding;
-  finding.cause = "board's outline";
-  finding.value = 1e3 * mean_m;
-  finding.standard_error = 1e3 * error_m;
-  finding.unit = "mm";
-  finding.log_likelihood_gain = gain;
-  finding.explained = mean_m * mean_m / (mean_m * mean_m + variance_m2);
-  finding.text = Format(
-      "the board's edges are given %.0f +- %.0f mm %s than the lidar measures "
-      "them: explains %.0f %% of the squared edge errors; measure the board and give it as "
-      "board.width_m and height_m",
-      1e3 * std::abs(mean_m),
-      1e3 * error_m,
-      mean_m > 0 ? "longer" : "shorter",
-      100 * finding.explained);
+  if (widths.num == 0 || heights.num == 0) return;
+  const double difference_m = widths.MeanM() - heights.MeanM();
+  const double error_m = std::hypot(widths.StandardErrorM(), heights.StandardErrorM());
+  const double sigmas = difference_m / error_m;
+  if (std::abs(difference_m) > options.min_side_error_m &&
+      0.5 * sigmas * sigmas > options.min_log_likelihood_gain) {
+    const bool is_width = std::abs(widths.MeanM()) > std::abs(heights.MeanM());
+    const EdgeErrors& wrong = is_width ? widths : heights;
+    Finding finding = OutlineFinding(is_width ? "board's width" : "board's height", wrong);
+    finding.text = Format("the board's %s is given ", is_width ? "width" : "height") +
+                   GivenTooLong(wrong) +
+                   Format(" it; measure it: board.%s: %.3f?",
+                          is_width ? "width_m" : "height_m",
+                          (is_width ? board.width_m : board.height_m) - wrong.MeanM());
+    diagnosis->findings.push_back(finding);
+    return;
+  }
+  if (std::abs(all.MeanM()) < options.min_edge_error_m ||
+      all.Gain() < options.min_log_likelihood_gain) {
+    return;
+  }
+  Finding finding = OutlineFinding("board's outline", all);
+  finding.text = "the board's edges are given " + GivenTooLong(all) +
+                 Format(
+                     " them: explains %.0f %% of the squared edge errors; measure the board and "
+                     "give it as board.width_m and height_m",
+                     100 * finding.explained);
   diagnosis->findings.push_back(finding);
 }
 
-// By the gain in likelihood; what has none to compare comes last.
+// Those that the equations are of.
+std::vector<const BoardSample*> SamplesOf(const std::vector<FaultEquation>& equations,
+                                          const std::vector<const BoardSample*>& samples) {
+  std::vector<const BoardSample*> kept;
+  for (const BoardSample* sample : samples) {
+    const bool is_kept =
+        std::any_of(equations.begin(), equations.end(), [sample](const FaultEquation& equation) {
+          return equation.sample_id == sample->id;
+        });
+    if (is_kept) kept.push_back(sample);
+  }
+  return kept;
+}
+
+// What must be mended first; then by the gain in likelihood; what has none to compare comes last.
 void Rank(std::vector<Finding>* findings) {
   const auto rank = [](const Finding& finding) {
     return std::isnan(finding.log_likelihood_gain) ? -1.0 : finding.log_likelihood_gain;
   };
   std::stable_sort(findings->begin(), findings->end(), [&rank](const Finding& a, const Finding& b) {
+    if (a.must_be_mended != b.must_be_mended) return a.must_be_mended;
     return rank(a) > rank(b);
   });
 }
@@ -191,13 +251,10 @@ void Rank(std::vector<Finding>* findings) {
 std::vector<std::string> DiagnosisOptions::Problems() const {
   ProblemList problems;
   problems.RequirePositive("min_log_likelihood_gain", min_log_likelihood_gain);
-  problems.RequirePositive("min_held_out_gain", min_held_out_gain);
-  problems.RequirePositive("min_focal_scale", min_focal_scale);
-  problems.RequirePositive("min_principal_point_px", min_principal_point_px);
-  problems.RequirePositive("min_square_scale", min_square_scale);
-  problems.RequirePositive("min_range_offset_m", min_range_offset_m);
+  problems.RequirePositive("min_moved_intervals", min_moved_intervals);
   problems.RequirePositive("max_range_offset_m", max_range_offset_m);
   problems.RequirePositive("min_edge_error_m", min_edge_error_m);
+  problems.RequirePositive("min_side_error_m", min_side_error_m);
   problems.RequirePositive("max_outlier_factor", max_outlier_factor);
   problems.RequirePositive("min_samples", min_samples);
   problems.RequirePositive("min_tilt_spread_rad", min_tilt_spread_rad);
@@ -210,6 +267,7 @@ Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
                    const BoardSpec& board,
                    const CameraModel& camera,
                    const Eigen::Isometry3d& T_camera_lidar,
+                   const Matrix6d& covariance,
                    const BiasEstimate& range_offset,
                    const DiagnosisOptions& options) {
   RequireUsable("DiagnosisOptions", options.Problems());
@@ -218,7 +276,16 @@ Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
   std::vector<FaultParameter> known;
   if (range_offset.is_observable) known.push_back(kRangeOffset);
   SetOutliersAside(known, options, &equations, &diagnosis);
-  JudgeModels(equations, known, options, &diagnosis);
+  JudgeModels(equations, known, board, camera, covariance, options, &diagnosis);
+  JudgeQuestions(SamplesOf(equations, samples),
+                 FitFaults(equations, known),
+                 known,
+                 board,
+                 camera,
+                 T_camera_lidar,
+                 covariance,
+                 options,
+                 &diagnosis);
   JudgeOutline(samples, board, options, &diagnosis);
   JudgeRangeOffset(range_offset, options, &diagnosis);
   Rank(&diagnosis.findings);

@@ -326,6 +326,15 @@ void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
 
 void ReadDiagnosis(YamlSection* assessor, DiagnosisOptions* options) {
   YamlSection section = assessor->Section("diagnosis");
+  // Of recorded sessions' rig files: what moves the result matters now, whatever its size.
+  for (const char* retired : {"min_held_out_gain",
+                              "min_focal_scale",
+                              "min_principal_point_px",
+                              "min_square_scale",
+                              "min_range_offset_m"}) {
+    double ignored = 0;
+    if (section.Has(retired)) section.Read(retired, &ignored);
+  }
   section.Read("min_log_likelihood_gain", &options->min_log_likelihood_gain);
   section.Read("min_moved_intervals", &options->min_moved_intervals);
   section.Read("max_range_offset_m", &options->max_range_offset_m);

@@ -69,7 +69,7 @@ void GrowOutline(double width_m, double height_m, GivenSession* session) {
 }
 
 std::vector<SessionFault> MakeFaults() {
-  const std::vector<std::string> focal = {"focal length", "fx alone", "fy alone"};
+  const std::vector<std::string> focal = {"focal length", "focal length fx", "focal length fy"};
   const std::vector<std::string> principal = {"principal point"};
   const std::vector<std::string> lens = {"distortion", "rectified images", "lens model"};
   const std::vector<std::string> offset = {"pattern offset", "sign of the pattern offset"};

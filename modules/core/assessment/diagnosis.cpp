@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "core/assessment/fault_model.hpp"
+#include "core/assessment/judge_outline.hpp"
 #include "core/assessment/judge_questions.hpp"
+#include "core/assessment/judged_result.hpp"
 #include "core/assessment/nested_models.hpp"
 #include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
@@ -136,91 +138,6 @@ void JudgePoses(const std::vector<const BoardSample*>& samples,
   }
 }
 
-// By how much edges are given longer than the lidar measures them freely.
-struct EdgeErrors {
-  double sum_m = 0;
-  double sum_m2 = 0;
-  int num = 0;
-
-  void Add(double error_m) {
-    if (std::isnan(error_m)) return;  // an open edge says nothing of the size
-    sum_m += error_m;
-    sum_m2 += error_m * error_m;
-    ++num;
-  }
-  double MeanM() const { return sum_m / num; }
-  double VarianceM2() const { return std::max(1e-12, sum_m2 / num - MeanM() * MeanM()); }
-  double StandardErrorM() const { return std::sqrt(VarianceM2() / num); }
-  double Gain() const { return 0.5 * num * std::log1p(MeanM() * MeanM() / VarianceM2()); }
-};
-
-Finding OutlineFinding(const char* cause, const EdgeErrors& errors) {
-  Finding finding;
-  finding.cause = cause;
-  finding.must_be_mended = true;
-  finding.value = 1e3 * errors.MeanM();
-  finding.standard_error = 1e3 * errors.StandardErrorM();
-  finding.unit = "mm";
-  finding.log_likelihood_gain = errors.Gain();
-  finding.explained =
-      std::pow(errors.MeanM(), 2) / (std::pow(errors.MeanM(), 2) + errors.VarianceM2());
-  return finding;
-}
-
-std::string GivenTooLong(const EdgeErrors& errors) {
-  return Format("%.0f +- %.0f mm %s than the lidar measures",
-                1e3 * std::abs(errors.MeanM()),
-                1e3 * errors.StandardErrorM(),
-                errors.MeanM() > 0 ? "longer" : "shorter");
-}
-
-// The outline against its edges as the lidar measures them freely: all of them, and the width
-// against the height.
-void JudgeOutline(const std::vector<const BoardSample*>& samples,
-                  const BoardSpec& board,
-                  const DiagnosisOptions& options,
-                  Diagnosis* diagnosis) {
-  const auto true_lengths_m = board.EdgeLengthsM();
-  EdgeErrors all;
-  EdgeErrors widths;
-  EdgeErrors heights;
-  for (const BoardSample* sample : samples) {
-    for (std::size_t i = 0; i < true_lengths_m.size(); ++i) {
-      const double error_m = true_lengths_m[i] - sample->lidar.edge_lengths_m[i];
-      all.Add(error_m);
-      (i % 2 == 0 ? widths : heights).Add(error_m);
-    }
-  }
-  if (widths.num == 0 || heights.num == 0) return;
-  const double difference_m = widths.MeanM() - heights.MeanM();
-  const double error_m = std::hypot(widths.StandardErrorM(), heights.StandardErrorM());
-  const double sigmas = difference_m / error_m;
-  if (std::abs(difference_m) > options.min_side_error_m &&
-      0.5 * sigmas * sigmas > options.min_log_likelihood_gain) {
-    const bool is_width = std::abs(widths.MeanM()) > std::abs(heights.MeanM());
-    const EdgeErrors& wrong = is_width ? widths : heights;
-    Finding finding = OutlineFinding(is_width ? "board's width" : "board's height", wrong);
-    finding.text = Format("the board's %s is given ", is_width ? "width" : "height") +
-                   GivenTooLong(wrong) +
-                   Format(" it; measure it: board.%s: %.3f?",
-                          is_width ? "width_m" : "height_m",
-                          (is_width ? board.width_m : board.height_m) - wrong.MeanM());
-    diagnosis->findings.push_back(finding);
-    return;
-  }
-  if (std::abs(all.MeanM()) < options.min_edge_error_m ||
-      all.Gain() < options.min_log_likelihood_gain) {
-    return;
-  }
-  Finding finding = OutlineFinding("board's outline", all);
-  finding.text = "the board's edges are given " + GivenTooLong(all) +
-                 Format(
-                     " them: explains %.0f %% of the squared edge errors; measure the board and "
-                     "give it as board.width_m and height_m",
-                     100 * finding.explained);
-  diagnosis->findings.push_back(finding);
-}
-
 // Those that the equations are of.
 std::vector<const BoardSample*> SamplesOf(const std::vector<FaultEquation>& equations,
                                           const std::vector<const BoardSample*>& samples) {
@@ -236,9 +153,13 @@ std::vector<const BoardSample*> SamplesOf(const std::vector<FaultEquation>& equa
 }
 
 // What must be mended first; then by the gain in likelihood; what has none to compare comes last.
-void Rank(std::vector<Finding>* findings) {
-  const auto rank = [](const Finding& finding) {
-    return std::isnan(finding.log_likelihood_gain) ? -1.0 : finding.log_likelihood_gain;
+// An answer without a free number (a turned sign) goes before one whose numbers, fitted to the same
+// samples, gain hardly more.
+void Rank(const DiagnosisOptions& options, std::vector<Finding>* findings) {
+  const auto rank = [&options](const Finding& finding) {
+    if (std::isnan(finding.log_likelihood_gain)) return -1.0;
+    const double ahead = std::isnan(finding.value) ? options.min_log_likelihood_gain : 0.0;
+    return finding.log_likelihood_gain + ahead;
   };
   std::stable_sort(findings->begin(), findings->end(), [&rank](const Finding& a, const Finding& b) {
     if (a.must_be_mended != b.must_be_mended) return a.must_be_mended;
@@ -276,19 +197,17 @@ Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
   std::vector<FaultParameter> known;
   if (range_offset.is_observable) known.push_back(kRangeOffset);
   SetOutliersAside(known, options, &equations, &diagnosis);
-  JudgeModels(equations, known, board, camera, covariance, options, &diagnosis);
+  const JudgedResult result{board, camera, T_camera_lidar, covariance};
+  JudgeModels(equations, known, result, options, &diagnosis);
   JudgeQuestions(SamplesOf(equations, samples),
                  FitFaults(equations, known),
                  known,
-                 board,
-                 camera,
-                 T_camera_lidar,
-                 covariance,
+                 result,
                  options,
                  &diagnosis);
-  JudgeOutline(samples, board, options, &diagnosis);
+  JudgeOutline(samples, board, range_offset, options, &diagnosis);
   JudgeRangeOffset(range_offset, options, &diagnosis);
-  Rank(&diagnosis.findings);
+  Rank(options, &diagnosis.findings);
   JudgeInconsistent(num_inconsistent, samples.size(), &diagnosis);
   JudgePoses(samples, options, &diagnosis);
   diagnosis.not_judged.push_back("time offset: samples are taken at rest, where it does not show");

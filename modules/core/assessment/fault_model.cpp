@@ -342,6 +342,10 @@ Vector6d FaultFit::ExtrinsicBy(FaultParameter fault) const {
   return covariance.block<6, 1>(0, i) / covariance(i, i);
 }
 
+CameraModel CameraWith(const FaultFit& fit, const CameraModel& given) {
+  return CameraWith(FaultVector(fit.value.tail<kNumFaultParameters>()), given);
+}
+
 FaultFit FitFaults(const std::vector<FaultEquation>& equations,
                    const std::vector<FaultParameter>& faults) {
   constexpr int kNumRounds = 20;  // the levels settle to a per mille within about ten

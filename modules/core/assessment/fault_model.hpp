@@ -93,6 +93,9 @@ struct FaultFit {
   Vector6d ExtrinsicBy(FaultParameter fault) const;
 };
 
+/// The camera that was given, as `fit` says that it truly is.
+CameraModel CameraWith(const FaultFit& fit, const CameraModel& given);
+
 /// Least squares with noise levels of their own for each kind of residual, estimated together with
 /// the parameters, which are the extrinsic and `faults`.
 FaultFit FitFaults(const std::vector<FaultEquation>& equations,

@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/assessment/nested_models.hpp"
 #include "core/assessment/rig_questions.hpp"
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/format.hpp"
@@ -83,21 +82,18 @@ Finding MakeFinding(const RigQuestion& question,
 void JudgeQuestions(const std::vector<const BoardSample*>& samples,
                     const FaultFit& plain,
                     const std::vector<FaultParameter>& known,
-                    const BoardSpec& board,
-                    const CameraModel& camera,
-                    const Eigen::Isometry3d& T_camera_lidar,
-                    const Matrix6d& covariance,
+                    const JudgedResult& result,
                     const DiagnosisOptions& options,
                     Diagnosis* diagnosis) {
   constexpr std::size_t kLeastSamples = 5;
   constexpr double kLeastShare = 0.8;  // of the samples, that must make sense
-  constexpr double kMostWorse = 1.01;  // how a pattern is turned says nothing of its centre
+  constexpr double kMostWorse = 1.1;   // how a pattern is turned says nothing of its centre
   if (!plain.is_usable || samples.size() < kLeastSamples) return;
-  const GivenSession given = SessionOf(samples, board, camera);
-  const Eigen::Isometry3d T_plain = PerturbLeft(T_camera_lidar, plain.value.head<6>());
+  const GivenSession given = SessionOf(samples, result.board, result.camera);
+  const Eigen::Isometry3d T_plain = PerturbLeft(result.T_camera_lidar, plain.value.head<6>());
   const double num = static_cast<double>(samples.size());
   std::optional<Finding> best;
-  for (const RigQuestion& question : QuestionsAbout(board, camera)) {
+  for (const RigQuestion& question : QuestionsAbout(result.board, result.camera)) {
     GivenSession session = given;
     question.undo(&session);
     if (static_cast<double>(session.samples.size()) < kLeastShare * num) continue;
@@ -109,7 +105,7 @@ void JudgeQuestions(const std::vector<const BoardSample*>& samples,
     if (gain < options.min_log_likelihood_gain) continue;
     if (best && gain < best->log_likelihood_gain) continue;
     if (answer->fit.mean_held_out_error_m > kMostWorse * plain.mean_held_out_error_m) continue;
-    best = MakeFinding(question, *answer, plain, T_plain, covariance, gain);
+    best = MakeFinding(question, *answer, plain, T_plain, result.covariance, gain);
   }
   if (best) diagnosis->findings.push_back(*best);
 }

@@ -4,6 +4,7 @@
 
 #include "core/assessment/diagnosis.hpp"
 #include "core/assessment/fault_model.hpp"
+#include "core/assessment/judged_result.hpp"
 
 namespace voqcal {
 
@@ -12,14 +13,10 @@ namespace voqcal {
 /// samples left out of the fit.
 /// @param plain  the fit of these samples as given, with the faults `known` that the result allows
 ///     for.
-/// @param T_camera_lidar  that its values are about.
 void JudgeQuestions(const std::vector<const BoardSample*>& samples,
                     const FaultFit& plain,
                     const std::vector<FaultParameter>& known,
-                    const BoardSpec& board,
-                    const CameraModel& camera,
-                    const Eigen::Isometry3d& T_camera_lidar,
-                    const Matrix6d& covariance,
+                    const JudgedResult& result,
                     const DiagnosisOptions& options,
                     Diagnosis* diagnosis);
 

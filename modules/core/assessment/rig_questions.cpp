@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/assessment/suspects.hpp"
 #include "core/board/half_turn.hpp"
 #include "core/format.hpp"
 
@@ -22,19 +23,11 @@ RigQuestion AskAbout(const std::string& cause,
           }};
 }
 
-std::string Line(const CameraModel& camera) {
-  std::string text = "camera.distortion: [";
-  for (int i = 0; i < NumDistortion(camera.lens); ++i) {
-    text += Format(i == 0 ? "%g" : ", %g", camera.distortion[static_cast<std::size_t>(i)]);
-  }
-  return text + "]";
-}
-
 void AskAboutLens(const CameraModel& camera, std::vector<RigQuestion>* questions) {
   const auto& d = camera.distortion;
   const bool is_straight = std::all_of(d.begin(), d.end(), [](double k) { return k == 0.0; });
   const auto ask = [&](const char* cause, const char* claim, const CameraModel& other) {
-    std::string line = Line(other);
+    std::string line = DistortionLine(other);
     if (other.lens != camera.lens)
       line = "camera.lens_model: " + ToString(other.lens) + ", " + line;
     questions->push_back(

@@ -29,7 +29,7 @@ Suspect FocalLength(const char* cause,
     if (fault == kFocalXScale) return fx;
     return fault == kFocalYScale ? "camera." + fy : fx + ", " + fy;
   };
-  return {cause, {fault}, 100, "%", claim, remedy};
+  return {cause, {fault}, true, 100, "%", claim, remedy};
 }
 
 Suspect PrincipalPoint(const CameraModel& camera) {
@@ -45,7 +45,7 @@ Suspect PrincipalPoint(const CameraModel& camera) {
                   camera.cx_px + fit.Value(kPrincipalX),
                   camera.cy_px + fit.Value(kPrincipalY));
   };
-  return {"principal point", {kPrincipalX, kPrincipalY}, 1, "px", claim, remedy};
+  return {"principal point", {kPrincipalX, kPrincipalY}, true, 1, "px", claim, remedy};
 }
 
 Suspect Coefficient(int i, const CameraModel& camera) {
@@ -59,9 +59,11 @@ Suspect Coefficient(int i, const CameraModel& camera) {
                   given);
   };
   const Say remedy = [=](const FaultFit& fit) {
-    return Format("camera.distortion, coefficient %d: %.4f", i + 1, given + fit.Value(fault));
+    CameraModel other = camera;
+    other.distortion[static_cast<std::size_t>(i)] += fit.Value(fault);
+    return DistortionLine(other);
   };
-  return {"distortion", {fault}, 1, "", claim, remedy};
+  return {"distortion", {fault}, true, 1, "", claim, remedy};
 }
 
 Suspect Squares(const BoardSpec& board) {
@@ -74,7 +76,7 @@ Suspect Squares(const BoardSpec& board) {
   const Say remedy = [board](const FaultFit& fit) {
     return Format("board.square_m: %.5f", board.square_m * (1 + fit.Value(kSquareScale)));
   };
-  return {"board's squares", {kSquareScale}, 100, "%", claim, remedy};
+  return {"board's squares", {kSquareScale}, false, 100, "%", claim, remedy};
 }
 
 Suspect PatternOffset(const BoardSpec& board) {
@@ -91,7 +93,7 @@ Suspect PatternOffset(const BoardSpec& board) {
                   board.pattern_offset_x_m + fit.Value(kPatternX),
                   board.pattern_offset_y_m + fit.Value(kPatternY));
   };
-  return {"pattern offset", {kPatternX, kPatternY}, kMmPerM, "mm", claim, remedy};
+  return {"pattern offset", {kPatternX, kPatternY}, false, kMmPerM, "mm", claim, remedy};
 }
 
 Suspect RangeOffset() {
@@ -104,7 +106,7 @@ Suspect RangeOffset() {
   const Say remedy = [](const FaultFit&) {
     return "take samples at more distances, which the refinement needs to take it out";
   };
-  return {"lidar range offset", {kRangeOffset}, kMmPerM, "mm", claim, remedy};
+  return {"lidar range offset", {kRangeOffset}, false, kMmPerM, "mm", claim, remedy};
 }
 
 }  // namespace
@@ -121,11 +123,19 @@ double Suspect::LengthError(const FaultFit& fit) const {
   return std::sqrt(sum);
 }
 
+std::string DistortionLine(const CameraModel& camera) {
+  std::string text = "camera.distortion: [";
+  for (int i = 0; i < NumDistortion(camera.lens); ++i) {
+    text += Format(i == 0 ? "%g" : ", %g", camera.distortion[static_cast<std::size_t>(i)]);
+  }
+  return text + "]";
+}
+
 std::vector<Suspect> SuspectsOf(const BoardSpec& board, const CameraModel& camera) {
   std::vector<Suspect> suspects = {
       FocalLength("focal length", "focal length", kFocalScale, camera),
-      FocalLength("fx alone", "focal length across the image", kFocalXScale, camera),
-      FocalLength("fy alone", "focal length down the image", kFocalYScale, camera),
+      FocalLength("focal length fx", "focal length across the image", kFocalXScale, camera),
+      FocalLength("focal length fy", "focal length down the image", kFocalYScale, camera),
       PrincipalPoint(camera),
       Squares(board),
       PatternOffset(board),

@@ -12,7 +12,8 @@ namespace voqcal {
 struct Suspect {
   std::string cause;  ///< One of a few.
   std::vector<FaultParameter> faults;
-  double scale = 1.0;  ///< From the first parameter's unit to that of the text.
+  bool is_of_camera = false;  ///< Of its intrinsics, which the extrinsic goes with.
+  double scale = 1.0;         ///< From the first parameter's unit to that of the text.
   std::string unit;
   /// "the focal length given is 2.0 +- 0.1 % too long": what is wrong with what was given.
   std::function<std::string(const FaultFit& fit)> claim;
@@ -22,6 +23,9 @@ struct Suspect {
   double Length(const FaultFit& fit) const;
   double LengthError(const FaultFit& fit) const;
 };
+
+/// The line of the rig file: "camera.distortion: [-0.44, 0.23, 0, 0, 0]".
+std::string DistortionLine(const CameraModel& camera);
 
 /// Focal lengths, principal point, each distortion coefficient, squares, where the pattern lies on
 /// the plate, the lidar's ranges.

@@ -67,14 +67,14 @@ TEST(Diagnose, FindsOneWrongFocalLength) {
   GivenSession session = CleanSession();
   session.camera.fx_px *= 1.02;
   SeeBoardsAgain(&session);
-  ExpectFirst(session, "fx alone", "camera.fx_px: ");
+  ExpectFirst(session, "focal length fx", "camera.fx_px: ");
 }
 
 TEST(Diagnose, FindsAWrongCoefficientOfTheLens) {
   GivenSession session = CleanSession();
   session.camera.distortion[0] += 0.05;
   SeeBoardsAgain(&session);
-  ExpectFirst(session, "distortion", "camera.distortion, coefficient 1");
+  ExpectFirst(session, "distortion", "camera.distortion: [-0.05");
 }
 
 TEST(Diagnose, FindsAPatternThatIsElsewhereOnThePlate) {

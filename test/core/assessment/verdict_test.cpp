@@ -54,11 +54,11 @@ TEST(VerdictOf, IsAsBadAsItsWorstCheck) {
 TEST(VerdictOf, IsBadByACauseThatMustBeMendedWhichComesFirst) {
   const Verdict verdict = JudgeWith([](Evidence* e) {
     e->likeliest_fault = "the true fx is 2 % longer";
-    e->likeliest_cause = "fx alone";
+    e->likeliest_cause = "focal length fx";
     e->must_be_mended = true;
   });
   EXPECT_EQ(verdict.grade, Grade::kBad);
-  EXPECT_THAT(verdict.headline, HasSubstr("first mend the fx alone"));
+  EXPECT_THAT(verdict.headline, HasSubstr("first mend the focal length fx"));
   EXPECT_EQ(verdict.checks.front().text, "The true fx is 2 % longer.");
 }
 

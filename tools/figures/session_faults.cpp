@@ -45,6 +45,8 @@ void OffsetRanges(double offset_m, GivenSession* session) {
     *point_m *= 1.0 + offset_m / point_m->norm();
   };
   for (BoardSample& sample : session->samples) {
+    for (double& length_m : sample.lidar.edge_lengths_m)
+      length_m *= 1.0 + offset_m / sample.lidar.pose.centre_m.norm();
     move(&sample.lidar.pose.centre_m);
     for (Eigen::Vector3d& corner_m : sample.lidar.pose.corners_m) move(&corner_m);
     for (LidarPoint& point : sample.lidar.points_lidar_m.points) {

@@ -97,7 +97,27 @@ struct Told {
   bool is_refused = true;  ///< No result, or "do not use".
   std::string cause;       ///< Named first; empty: none.
   std::string headline;
+  std::vector<std::string> hidden;  ///< What the samples leave open, or could hide.
 };
+
+// Whether it is said that such a fault could hide, with what it would do.
+bool IsSaidToHide(const Told& told, const SessionFault& fault) {
+  for (const std::string& text : told.hidden) {
+    for (const std::string& cause : fault.causes) {
+      if (text.rfind(cause + ":", 0) == 0) return true;
+    }
+  }
+  return false;
+}
+
+// "...; likely cause: shifted pairs: each image ...": where there is no result.
+std::string CauseIn(const std::string& problem) {
+  const std::string before = "likely cause: ";
+  const std::size_t at = problem.find(before);
+  if (at == std::string::npos) return "";
+  const std::size_t from = at + before.size();
+  return problem.substr(from, problem.find(':', from) - from);
+}
 
 Told Tell(GivenSession session, const Rig& rig) {
   CalibrationTask task = rig.Task();
@@ -114,7 +134,11 @@ Told Tell(GivenSession session, const Rig& rig) {
   Told told;
   told.outcome = Calibrate(samples, {}, task);
   told.headline = told.outcome.problem;
-  if (!told.outcome.problem.empty()) return told;
+  if (!told.outcome.problem.empty()) {
+    told.cause = CauseIn(told.outcome.problem);
+    return told;
+  }
+  told.hidden = told.outcome.calibration.diagnosis.not_judged;
   const Verdict verdict = VerdictOf(told.outcome.calibration);
   told.is_refused = verdict.grade == Grade::kBad;
   told.headline = verdict.headline;
@@ -144,6 +168,7 @@ struct Tally {
   int num_refused = 0;
   int num_named = 0;
   int num_another = 0;
+  int num_hidden = 0;  // usable, no cause named, but it is said that this one could hide
 
   void Add(const Told& told, double moved, const SessionFault& fault) {
     ++num;
@@ -153,6 +178,7 @@ struct Tally {
     const bool is_named =
         std::find(fault.causes.begin(), fault.causes.end(), told.cause) != fault.causes.end();
     num_named += is_named ? 1 : 0;
+    num_hidden += !told.is_refused && told.cause.empty() && IsSaidToHide(told, fault) ? 1 : 0;
     num_another += !is_named && !told.cause.empty() ? 1 : 0;
   }
 
@@ -162,18 +188,20 @@ struct Tally {
     num_refused += other.num_refused;
     num_named += other.num_named;
     num_another += other.num_another;
+    num_hidden += other.num_hidden;
   }
 };
 
 void PrintTally(const std::string& name, const char* size, const Tally& tally) {
-  std::printf("%-22s  %-7s  %4d  %6d  %10d  %5d  %7d\n",
+  std::printf("%-22s  %-7s  %4d  %6d  %10d  %5d  %7d  %10d\n",
               name.c_str(),
               size,
               tally.num,
               tally.num_moved,
               tally.num_refused,
               tally.num_named,
-              tally.num_another);
+              tally.num_another,
+              tally.num_hidden);
   std::fflush(stdout);
 }
 
@@ -227,7 +255,8 @@ class FaultTable {
   }
 
   void Print() const {
-    std::puts("fault                   size     runs   moved  do not use  named  another");
+    std::puts(
+        "fault                   size     runs   moved  do not use  named  another  could hide");
     Tally all;
     for (std::size_t i = 0; i < tallies_.size(); ++i) {
       for (std::size_t k = 0; k < tallies_[i].size(); ++k) {
@@ -240,10 +269,13 @@ class FaultTable {
     const double percent = 100.0 / std::max(all.num_moved, 1);
     std::printf(
         "of those that moved the result beyond its 95 %% interval: %.1f %% \"do not use\" (asked: "
-        "98), %.1f %% named first (asked: 90), %.1f %% another (asked: at most 3)\n",
+        "98), %.1f %% named first (asked: 90), %.1f %% another (asked: at most 3); of %.1f %% it "
+        "is said that "
+        "the cause could hide\n",
         percent * all.num_refused,
         percent * all.num_named,
-        percent * all.num_another);
+        percent * all.num_another,
+        percent * all.num_hidden);
   }
 
  private:

@@ -298,19 +298,21 @@ double CentreErrorM(const FaultEquation& equation, const ModelVector& value) {
   return (equation.r + equation.J * value).head<3>().norm();
 }
 
-double HeldOutErrorM(const std::vector<FaultEquation>& equations,
-                     const std::vector<int>& columns,
-                     const NoiseLevels& noise) {
+// Infinite where the other samples leave a parameter open.
+std::vector<double> HeldOutErrorsM(const std::vector<FaultEquation>& equations,
+                                   const std::vector<int>& columns,
+                                   const NoiseLevels& noise) {
   const NormalEquations all = SumOf(equations, columns, noise);
-  double sum_m = 0;
+  std::vector<double> errors_m;
   for (const FaultEquation& equation : equations) {
     NormalEquations others = all;
     Add(equation, columns, noise, -1, &others);
     const auto inverse = InverseOf(others.H);
-    if (!inverse) return std::numeric_limits<double>::infinity();
-    sum_m += CentreErrorM(equation, Scattered(Eigen::VectorXd(*inverse * others.b), columns));
+    errors_m.push_back(
+        inverse ? CentreErrorM(equation, Scattered(Eigen::VectorXd(*inverse * others.b), columns))
+                : std::numeric_limits<double>::infinity());
   }
-  return sum_m / static_cast<double>(equations.size());
+  return errors_m;
 }
 
 }  // namespace
@@ -373,7 +375,10 @@ FaultFit FitFaults(const std::vector<FaultEquation>& equations,
   for (const double error_m : CentreErrorsM(equations, fit)) {
     fit.mean_error_m += error_m / num_samples;
   }
-  fit.mean_held_out_error_m = HeldOutErrorM(equations, columns, fit.noise);
+  fit.held_out_errors_m = HeldOutErrorsM(equations, columns, fit.noise);
+  for (const double error_m : fit.held_out_errors_m) {
+    fit.mean_held_out_error_m += error_m / num_samples;
+  }
   return fit;
 }
 

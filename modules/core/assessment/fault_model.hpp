@@ -81,9 +81,10 @@ struct FaultFit {
   ModelVector value = ModelVector::Zero();       ///< Zero where not fitted.
   ModelMatrix covariance = ModelMatrix::Zero();  ///< The same.
   NoiseLevels noise{};
-  double log_likelihood = 0;         ///< With these noise levels, but for a constant.
-  double mean_error_m = 0;           ///< Of the centres, in space.
-  double mean_held_out_error_m = 0;  ///< The same, each sample left out of the fit in turn.
+  double log_likelihood = 0;              ///< With these noise levels, but for a constant.
+  double mean_error_m = 0;                ///< Of the centres, in space.
+  std::vector<double> held_out_errors_m;  ///< The same, each sample left out of the fit in turn.
+  double mean_held_out_error_m = 0;
 
   std::array<double, kNumResidualKinds> squares{};  ///< Sums of squares by kind.
 

@@ -49,9 +49,59 @@ std::string GivenTooLong(const EdgeErrors& errors) {
                 errors.MeanM() > 0 ? "longer" : "shorter");
 }
 
-// Ranges that are too long show a board too far, and too large by as much.
-double TrueShare(const BoardPose& pose, const BiasEstimate& range_offset) {
-  return range_offset.is_observable ? 1 - range_offset.value_m / pose.centre_m.norm() : 1.0;
+struct OutlineErrors {
+  EdgeErrors all;
+  EdgeErrors widths;
+  EdgeErrors heights;
+};
+
+// Ranges that are too long by `offset_m` show a board too far, and too large by as much.
+OutlineErrors ErrorsOf(const std::vector<const BoardSample*>& samples,
+                       const BoardSpec& board,
+                       double offset_m) {
+  const auto given_lengths_m = board.EdgeLengthsM();
+  OutlineErrors errors;
+  for (const BoardSample* sample : samples) {
+    const double share = 1 - offset_m / sample->lidar.pose.centre_m.norm();
+    for (std::size_t i = 0; i < given_lengths_m.size(); ++i) {
+      const double error_m = given_lengths_m[i] - share * sample->lidar.edge_lengths_m[i];
+      errors.all.Add(error_m);
+      (i % 2 == 0 ? errors.widths : errors.heights).Add(error_m);
+    }
+  }
+  return errors;
+}
+
+// An offset may be the lidar's own or that of squares, which leave the outline alone: whichever
+// explains the edges.
+OutlineErrors LeastErrorsOf(const std::vector<const BoardSample*>& samples,
+                            const BoardSpec& board,
+                            const BiasEstimate& range_offset) {
+  const OutlineErrors as_seen = ErrorsOf(samples, board, 0.0);
+  if (!range_offset.is_observable) return as_seen;
+  const OutlineErrors corrected = ErrorsOf(samples, board, range_offset.value_m);
+  return std::abs(corrected.all.MeanM()) < std::abs(as_seen.all.MeanM()) ? corrected : as_seen;
+}
+
+bool IsOneSideWrong(const OutlineErrors& errors, const DiagnosisOptions& options) {
+  const double difference_m = errors.widths.MeanM() - errors.heights.MeanM();
+  const double error_m =
+      std::hypot(errors.widths.StandardErrorM(), errors.heights.StandardErrorM());
+  const double sigmas = difference_m / error_m;
+  return std::abs(difference_m) > options.min_side_error_m &&
+         0.5 * sigmas * sigmas > options.min_log_likelihood_gain;
+}
+
+Finding SideFinding(const OutlineErrors& errors, const BoardSpec& board) {
+  const bool is_width = std::abs(errors.widths.MeanM()) > std::abs(errors.heights.MeanM());
+  const EdgeErrors& wrong = is_width ? errors.widths : errors.heights;
+  Finding finding = OutlineFinding(is_width ? "board's width" : "board's height", wrong);
+  finding.text = Format("the board's %s is given ", is_width ? "width" : "height") +
+                 GivenTooLong(wrong) +
+                 Format(" it; measure it: board.%s: %.3f?",
+                        is_width ? "width_m" : "height_m",
+                        (is_width ? board.width_m : board.height_m) - wrong.MeanM());
+  return finding;
 }
 
 }  // namespace
@@ -61,35 +111,13 @@ void JudgeOutline(const std::vector<const BoardSample*>& samples,
                   const BiasEstimate& range_offset,
                   const DiagnosisOptions& options,
                   Diagnosis* diagnosis) {
-  const auto given_lengths_m = board.EdgeLengthsM();
-  EdgeErrors all;
-  EdgeErrors widths;
-  EdgeErrors heights;
-  for (const BoardSample* sample : samples) {
-    const double share = TrueShare(sample->lidar.pose, range_offset);
-    for (std::size_t i = 0; i < given_lengths_m.size(); ++i) {
-      const double error_m = given_lengths_m[i] - share * sample->lidar.edge_lengths_m[i];
-      all.Add(error_m);
-      (i % 2 == 0 ? widths : heights).Add(error_m);
-    }
-  }
-  if (widths.num == 0 || heights.num == 0) return;
-  const double difference_m = widths.MeanM() - heights.MeanM();
-  const double error_m = std::hypot(widths.StandardErrorM(), heights.StandardErrorM());
-  const double sigmas = difference_m / error_m;
-  if (std::abs(difference_m) > options.min_side_error_m &&
-      0.5 * sigmas * sigmas > options.min_log_likelihood_gain) {
-    const bool is_width = std::abs(widths.MeanM()) > std::abs(heights.MeanM());
-    const EdgeErrors& wrong = is_width ? widths : heights;
-    Finding finding = OutlineFinding(is_width ? "board's width" : "board's height", wrong);
-    finding.text = Format("the board's %s is given ", is_width ? "width" : "height") +
-                   GivenTooLong(wrong) +
-                   Format(" it; measure it: board.%s: %.3f?",
-                          is_width ? "width_m" : "height_m",
-                          (is_width ? board.width_m : board.height_m) - wrong.MeanM());
-    diagnosis->findings.push_back(finding);
+  const OutlineErrors errors = LeastErrorsOf(samples, board, range_offset);
+  if (errors.widths.num == 0 || errors.heights.num == 0) return;
+  if (IsOneSideWrong(errors, options)) {
+    diagnosis->findings.push_back(SideFinding(errors, board));
     return;
   }
+  const EdgeErrors& all = errors.all;
   if (std::abs(all.MeanM()) < options.min_edge_error_m ||
       all.Gain() < options.min_log_likelihood_gain) {
     return;

@@ -26,8 +26,8 @@ Vector6d MoveBetween(const FaultFit& before, const FaultFit& after) {
 // differ between models.
 double CentreSquares(const FaultFit& fit) { return fit.squares[kAcross] + fit.squares[kAlong]; }
 
-// The result is wrong by a cause that moves it beyond its interval; by a fault of the camera's
-// model, which goes with the extrinsic, only if lidar points land elsewhere in the image, too.
+// The result is wrong by a cause that moves it beyond its interval; by one that the rotation makes
+// good, only if lidar points land elsewhere in the image, too.
 void WeighMove(const Suspect& suspect,
                const Vector6d& move,
                const FaultFit& fit,
@@ -36,7 +36,7 @@ void WeighMove(const Suspect& suspect,
   finding->moved_intervals = IntervalsOf(move, result.covariance);
   finding->must_be_mended = finding->moved_intervals > 1;
   finding->text += MoveText(move, result.covariance);
-  if (!suspect.is_of_camera || !finding->must_be_mended) return;
+  if (!suspect.trades_rotation || !finding->must_be_mended) return;
   const Landing landing = LandingOf(CameraWith(fit, result.camera), move, result);
   finding->must_be_mended = landing.intervals > 1;
   finding->text += Format(
@@ -73,19 +73,36 @@ Finding MakeFinding(const Candidate& candidate,
   return finding;
 }
 
+// By how many of its standard errors the mean error of poses held out falls: of pairs, as a pose
+// that is far off is so with both.
+double GainSigmas(const FaultFit& before, const FaultFit& fit) {
+  const auto num = static_cast<double>(fit.held_out_errors_m.size());
+  double sum = 0;
+  double sum2 = 0;
+  for (std::size_t i = 0; i < fit.held_out_errors_m.size(); ++i) {
+    const double gain = before.held_out_errors_m[i] - fit.held_out_errors_m[i];
+    sum += gain;
+    sum2 += gain * gain;
+  }
+  return sum / std::sqrt(std::max(sum2 - sum * sum / num, 0.0));
+}
+
 // Beyond chance, also for samples that it was not fitted to, and of consequence: it moves the
 // result beyond what is said of it.
 bool IsWorthAWord(const Candidate& candidate,
                   const FaultFit& before,
                   const Matrix6d& covariance,
                   const DiagnosisOptions& options) {
-  // By which the error of poses held out must fall: what no model has (edges that beams widen, a
-  // tape's reading of a plate) leaves errors that one parameter or another takes up in part.
+  // What no model has (edges that beams widen, a plate that is not quite flat) leaves errors that
+  // one parameter or another takes up in part, far beyond what white noise would: so the error of
+  // poses held out must fall, and for so many of them that it is no chance.
   constexpr double kLeastHeldOutGain = 0.1;
+  constexpr double kLeastGainSigmas = 2.5;
   const FaultFit& fit = candidate.fit;
   return candidate.gain > options.min_log_likelihood_gain &&
          candidate.suspect.Length(fit) > 3 * candidate.suspect.LengthError(fit) &&
          fit.mean_held_out_error_m < (1 - kLeastHeldOutGain) * before.mean_held_out_error_m &&
+         GainSigmas(before, fit) > kLeastGainSigmas &&
          IntervalsOf(MoveBetween(before, fit), covariance) > options.min_moved_intervals;
 }
 
@@ -94,23 +111,20 @@ void SayWhatCouldHide(const std::vector<Candidate>& candidates,
                       const Matrix6d& covariance,
                       Diagnosis* diagnosis) {
   constexpr double kSigmas = 3.0;
-  double most = 1.0;
-  std::string text;
   for (const Candidate& candidate : candidates) {
     for (const FaultParameter fault : candidate.suspect.faults) {
       const double hidden = kSigmas * candidate.fit.StandardError(fault);
       const Vector6d move = hidden * candidate.fit.ExtrinsicBy(fault);
-      const double intervals = IntervalsOf(move, covariance);
-      if (!(intervals > most)) continue;
-      most = intervals;
-      text = Format("%s: an error of %.2g %s could hide in these samples; ",
-                    candidate.suspect.cause.c_str(),
-                    candidate.suspect.scale * hidden,
-                    candidate.suspect.unit.c_str()) +
-             MoveText(move, covariance);
+      if (!(IntervalsOf(move, covariance) > 1)) continue;
+      diagnosis->not_judged.push_back(
+          Format("%s: an error of %.2g %s could hide in these samples; ",
+                 candidate.suspect.cause.c_str(),
+                 candidate.suspect.scale * hidden,
+                 candidate.suspect.unit.c_str()) +
+          MoveText(move, covariance));
+      break;  // the other parameters of a group are much alike
     }
   }
-  if (!text.empty()) diagnosis->not_judged.push_back(text);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ Suspect FocalLength(const char* cause,
     if (fault == kFocalXScale) return fx;
     return fault == kFocalYScale ? "camera." + fy : fx + ", " + fy;
   };
-  return {cause, {fault}, true, 100, "%", claim, remedy};
+  return {cause, {fault}, false, 100, "%", claim, remedy};
 }
 
 Suspect PrincipalPoint(const CameraModel& camera) {
@@ -63,7 +63,7 @@ Suspect Coefficient(int i, const CameraModel& camera) {
     other.distortion[static_cast<std::size_t>(i)] += fit.Value(fault);
     return DistortionLine(other);
   };
-  return {"distortion", {fault}, true, 1, "", claim, remedy};
+  return {"distortion", {fault}, false, 1, "", claim, remedy};
 }
 
 Suspect Squares(const BoardSpec& board) {

@@ -12,8 +12,8 @@ namespace voqcal {
 struct Suspect {
   std::string cause;  ///< One of a few.
   std::vector<FaultParameter> faults;
-  bool is_of_camera = false;  ///< Of its intrinsics, which the extrinsic goes with.
-  double scale = 1.0;         ///< From the first parameter's unit to that of the text.
+  bool trades_rotation = false;  ///< The extrinsic turns with it, and points land as before.
+  double scale = 1.0;            ///< From the first parameter's unit to that of the text.
   std::string unit;
   /// "the focal length given is 2.0 +- 0.1 % too long": what is wrong with what was given.
   std::function<std::string(const FaultFit& fit)> claim;

@@ -326,14 +326,20 @@ void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
 
 void ReadDiagnosis(YamlSection* assessor, DiagnosisOptions* options) {
   YamlSection section = assessor->Section("diagnosis");
+  // Of recorded sessions' rig files: what moves the result matters now, whatever its size.
+  for (const char* retired : {"min_held_out_gain",
+                              "min_focal_scale",
+                              "min_principal_point_px",
+                              "min_square_scale",
+                              "min_range_offset_m"}) {
+    double ignored = 0;
+    if (section.Has(retired)) section.Read(retired, &ignored);
+  }
   section.Read("min_log_likelihood_gain", &options->min_log_likelihood_gain);
-  section.Read("min_held_out_gain", &options->min_held_out_gain);
-  section.Read("min_focal_scale", &options->min_focal_scale);
-  section.Read("min_principal_point_px", &options->min_principal_point_px);
-  section.Read("min_square_scale", &options->min_square_scale);
-  section.Read("min_range_offset_m", &options->min_range_offset_m);
+  section.Read("min_moved_intervals", &options->min_moved_intervals);
   section.Read("max_range_offset_m", &options->max_range_offset_m);
   section.Read("min_edge_error_m", &options->min_edge_error_m);
+  section.Read("min_side_error_m", &options->min_side_error_m);
   section.Read("max_outlier_factor", &options->max_outlier_factor);
   section.Read("min_samples", &options->min_samples);
   section.ReadDegrees("min_tilt_spread_deg", &options->min_tilt_spread_rad);

@@ -117,7 +117,7 @@ std::string SceneLines(const CalibrationResult& result) {
 
 std::string DiagnosisLines(const Diagnosis& diagnosis) {
   std::string text = "what is likely wrong\n";
-  if (diagnosis.findings.empty()) text += "  nothing: nothing is to be done\n";
+  if (diagnosis.findings.empty()) text += "  nothing that would explain the errors better\n";
   for (const Finding& finding : diagnosis.findings) {
     text += "  " + finding.cause + ": " + finding.text + "\n";
   }

@@ -19,5 +19,6 @@ int main(int argc, char** argv) {
   voqcal::AddRepeatability(&app);
   voqcal::AddSceneCheckPower(&app);
   voqcal::AddSubsets(&app);
+  voqcal::AddVerdict(&app);
   return voqcal::RunTool(&app, argc, argv, [] {});
 }

@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "core/assessment/fault_model.hpp"
+#include "core/assessment/judge_outline.hpp"
+#include "core/assessment/judge_questions.hpp"
+#include "core/assessment/judged_result.hpp"
 #include "core/assessment/nested_models.hpp"
 #include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
@@ -59,6 +62,7 @@ void JudgeRangeOffset(const BiasEstimate& range_offset,
   finding.value = 1e3 * range_offset.value_m;
   finding.standard_error = 1e3 * range_offset.standard_error_m;
   finding.unit = "mm";
+  finding.must_be_mended = true;
   finding.text = Format(
       "%.0f +- %.0f mm were taken out of the lidar's ranges, more than lidars err: squares or a "
       "focal length given too %s look the same; check board.square_m, camera.fx_px and fy_px",
@@ -76,7 +80,7 @@ void JudgeInconsistent(int num_inconsistent, std::size_t num_used, Diagnosis* di
   finding.value = num_inconsistent;
   finding.text = Format(
       "%d of %zu samples contradict the others: the board moved, or something else was taken for "
-      "it; they were left out, nothing is to be done",
+      "it; they were left out",
       num_inconsistent,
       num_used + static_cast<std::size_t>(num_inconsistent));
   diagnosis->findings.push_back(finding);
@@ -134,54 +138,31 @@ void JudgePoses(const std::vector<const BoardSample*>& samples,
   }
 }
 
-// The outline against its edges as the lidar measures them freely.
-void JudgeOutline(const std::vector<const BoardSample*>& samples,
-                  const BoardSpec& board,
-                  const DiagnosisOptions& options,
-                  Diagnosis* diagnosis) {
-  const auto true_lengths_m = board.EdgeLengthsM();
-  double sum_m = 0;
-  double sum_m2 = 0;
-  int num_edges = 0;
+// Those that the equations are of.
+std::vector<const BoardSample*> SamplesOf(const std::vector<FaultEquation>& equations,
+                                          const std::vector<const BoardSample*>& samples) {
+  std::vector<const BoardSample*> kept;
   for (const BoardSample* sample : samples) {
-    for (std::size_t i = 0; i < true_lengths_m.size(); ++i) {
-      const double error_m = true_lengths_m[i] - sample->lidar.edge_lengths_m[i];
-      if (std::isnan(error_m)) continue;  // an open edge says nothing of the size
-      sum_m += error_m;
-      sum_m2 += error_m * error_m;
-      ++num_edges;
-    }
+    const bool is_kept =
+        std::any_of(equations.begin(), equations.end(), [sample](const FaultEquation& equation) {
+          return equation.sample_id == sample->id;
+        });
+    if (is_kept) kept.push_back(sample);
   }
-  if (num_edges == 0) return;
-  const double mean_m = sum_m / num_edges;
-  const double variance_m2 = std::max(1e-12, sum_m2 / num_edges - mean_m * mean_m);
-  const double error_m = std::sqrt(variance_m2 / num_edges);
-  const double gain = 0.5 * num_edges * std::log1p(mean_m * mean_m / variance_m2);
-  if (std::abs(mean_m) < options.min_edge_error_m || gain < options.min_log_likelihood_gain) return;
-  Finding finding;
-  finding.cause = "board's outline";
-  finding.value = 1e3 * mean_m;
-  finding.standard_error = 1e3 * error_m;
-  finding.unit = "mm";
-  finding.log_likelihood_gain = gain;
-  finding.explained = mean_m * mean_m / (mean_m * mean_m + variance_m2);
-  finding.text = Format(
-      "the board's edges are given %.0f +- %.0f mm %s than the lidar measures "
-      "them: explains %.0f %% of the squared edge errors; measure the board and give it as "
-      "board.width_m and height_m",
-      1e3 * std::abs(mean_m),
-      1e3 * error_m,
-      mean_m > 0 ? "longer" : "shorter",
-      100 * finding.explained);
-  diagnosis->findings.push_back(finding);
+  return kept;
 }
 
-// By the gain in likelihood; what has none to compare comes last.
-void Rank(std::vector<Finding>* findings) {
-  const auto rank = [](const Finding& finding) {
-    return std::isnan(finding.log_likelihood_gain) ? -1.0 : finding.log_likelihood_gain;
+// What must be mended first; then by the gain in likelihood; what has none to compare comes last.
+// An answer without a free number (a turned sign) goes before one whose numbers, fitted to the same
+// samples, gain hardly more.
+void Rank(const DiagnosisOptions& options, std::vector<Finding>* findings) {
+  const auto rank = [&options](const Finding& finding) {
+    if (std::isnan(finding.log_likelihood_gain)) return -1.0;
+    const double ahead = std::isnan(finding.value) ? options.min_log_likelihood_gain : 0.0;
+    return finding.log_likelihood_gain + ahead;
   };
   std::stable_sort(findings->begin(), findings->end(), [&rank](const Finding& a, const Finding& b) {
+    if (a.must_be_mended != b.must_be_mended) return a.must_be_mended;
     return rank(a) > rank(b);
   });
 }
@@ -191,13 +172,10 @@ void Rank(std::vector<Finding>* findings) {
 std::vector<std::string> DiagnosisOptions::Problems() const {
   ProblemList problems;
   problems.RequirePositive("min_log_likelihood_gain", min_log_likelihood_gain);
-  problems.RequirePositive("min_held_out_gain", min_held_out_gain);
-  problems.RequirePositive("min_focal_scale", min_focal_scale);
-  problems.RequirePositive("min_principal_point_px", min_principal_point_px);
-  problems.RequirePositive("min_square_scale", min_square_scale);
-  problems.RequirePositive("min_range_offset_m", min_range_offset_m);
+  problems.RequirePositive("min_moved_intervals", min_moved_intervals);
   problems.RequirePositive("max_range_offset_m", max_range_offset_m);
   problems.RequirePositive("min_edge_error_m", min_edge_error_m);
+  problems.RequirePositive("min_side_error_m", min_side_error_m);
   problems.RequirePositive("max_outlier_factor", max_outlier_factor);
   problems.RequirePositive("min_samples", min_samples);
   problems.RequirePositive("min_tilt_spread_rad", min_tilt_spread_rad);
@@ -210,6 +188,7 @@ Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
                    const BoardSpec& board,
                    const CameraModel& camera,
                    const Eigen::Isometry3d& T_camera_lidar,
+                   const Matrix6d& covariance,
                    const BiasEstimate& range_offset,
                    const DiagnosisOptions& options) {
   RequireUsable("DiagnosisOptions", options.Problems());
@@ -218,10 +197,17 @@ Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
   std::vector<FaultParameter> known;
   if (range_offset.is_observable) known.push_back(kRangeOffset);
   SetOutliersAside(known, options, &equations, &diagnosis);
-  JudgeModels(equations, known, options, &diagnosis);
-  JudgeOutline(samples, board, options, &diagnosis);
+  const JudgedResult result{board, camera, T_camera_lidar, covariance};
+  JudgeModels(equations, known, result, options, &diagnosis);
+  JudgeQuestions(SamplesOf(equations, samples),
+                 FitFaults(equations, known),
+                 known,
+                 result,
+                 options,
+                 &diagnosis);
+  JudgeOutline(samples, board, range_offset, options, &diagnosis);
   JudgeRangeOffset(range_offset, options, &diagnosis);
-  Rank(&diagnosis.findings);
+  Rank(options, &diagnosis.findings);
   JudgeInconsistent(num_inconsistent, samples.size(), &diagnosis);
   JudgePoses(samples, options, &diagnosis);
   diagnosis.not_judged.push_back("time offset: samples are taken at rest, where it does not show");

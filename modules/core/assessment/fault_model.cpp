@@ -9,23 +9,23 @@
 
 #include "core/board/half_turn.hpp"
 #include "core/board/what_was_measured.hpp"
-#include "core/camera_detection/planar_pose.hpp"
+#include "core/estimation/left_perturbation.hpp"
 #include "core/geometry/rigid.hpp"
 
 namespace voqcal {
 namespace {
 
 using FaultVector = Eigen::Matrix<double, kNumFaultParameters, 1>;
-using ModelVector = Eigen::Matrix<double, kNumModelParameters, 1>;
+using FaultJacobian = Eigen::Matrix<double, 6, kNumFaultParameters>;
 
-// Steps of the numeric derivatives: small against what matters, large against rounding.
-constexpr double kExtrinsicStep = 1e-5;  // rad and m
-const FaultVector kFaultSteps = (FaultVector() << 1e-4, 0.1, 0.1, 1e-4, 1e-4).finished();
+constexpr double kStep = 1e-5;  // of all numeric derivatives: rad, m, and shares
 
 // No fit is believed to be better than this: exact data must not make noise levels of zero.
-constexpr NoiseLevels kLeastNoise = {2e-4, 5e-4, 5e-4, 5e-4};
-constexpr NoiseLevels kFirstNoise = {3e-3, 1e-2, 1e-2, 5e-3};
-constexpr std::array<int, kNumResidualKinds> kRowsOfKind = {2, 1, 2, 1};
+constexpr NoiseLevels kLeastNoise = {2e-4, 5e-4, 5e-4, 5e-4, 0.02};
+constexpr NoiseLevels kFirstNoise = {3e-3, 1e-2, 1e-2, 5e-3, 0.3};
+constexpr std::array<int, kCorner> kRowsOfKind = {2, 1, 2, 1};
+// Neighbouring corners err alike, by what no lens model has: so many tell as much as all of them.
+constexpr double kIndependentCorners = 0.1;
 
 // The lidar's board if its ranges are too long by `offset_m`: each corner moves along its ray.
 Eigen::Isometry3d LidarBoardWithout(double offset_m, const BoardPose& pose) {
@@ -41,23 +41,101 @@ Eigen::Isometry3d LidarBoardWithout(double offset_m, const BoardPose& pose) {
   return TransformFromPose(moved);
 }
 
-// The camera's board if the camera and the squares are as `fault` says; nothing without corners.
-std::optional<Eigen::Isometry3d> CameraBoardWith(const FaultVector& fault,
-                                                 const BoardSample& sample,
-                                                 const BoardSpec& board,
-                                                 const CameraModel& camera) {
-  BoardSpec true_board = board;
-  true_board.square_m *= 1 + fault[kSquareScale];
-  CameraModel true_camera = camera;
-  true_camera.fx_px *= 1 + fault[kFocalScale];
-  true_camera.fy_px *= 1 + fault[kFocalScale];
-  true_camera.cx_px += fault[kPrincipalX];
-  true_camera.cy_px += fault[kPrincipalY];
-  const auto points_board_m = true_board.InnerCornersBoardM();
-  if (sample.camera.corners_px.size() != points_board_m.size()) return std::nullopt;
-  const auto fit = FitSeenCorners(true_camera, points_board_m, sample.camera.corners_px);
-  if (!fit) return std::nullopt;
-  return fit->T_camera_board;
+CameraModel CameraWith(const FaultVector& fault, const CameraModel& given) {
+  CameraModel camera = given;
+  camera.fx_px *= 1 + fault[kFocalScale] + fault[kFocalXScale];
+  camera.fy_px *= 1 + fault[kFocalScale] + fault[kFocalYScale];
+  camera.cx_px += fault[kPrincipalX];
+  camera.cy_px += fault[kPrincipalY];
+  for (int i = 0; i < kSquareScale - kDistortion; ++i) {
+    if (i < NumDistortion(camera.lens)) {
+      camera.distortion[static_cast<std::size_t>(i)] += fault[kDistortion + i];
+    }
+  }
+  return camera;
+}
+
+BoardSpec BoardWith(const FaultVector& fault, const BoardSpec& given) {
+  BoardSpec board = given;
+  board.square_m *= 1 + fault[kSquareScale];
+  board.pattern_offset_x_m += fault[kPatternX];
+  board.pattern_offset_y_m += fault[kPatternY];
+  return board;
+}
+
+// Pixels of the corners that were seen, of a board that is where it is and is as `fault` says.
+Eigen::VectorXd PixelsWith(const FaultVector& fault,
+                           const std::vector<std::size_t>& seen,
+                           const Eigen::Isometry3d& T_camera_board,
+                           const BoardSpec& board,
+                           const CameraModel& camera) {
+  const CameraModel true_camera = CameraWith(fault, camera);
+  const auto corners_board_m = BoardWith(fault, board).InnerCornersBoardM();
+  Eigen::VectorXd pixels(2 * static_cast<Eigen::Index>(seen.size()));
+  Eigen::Index row = 0;
+  for (const std::size_t i : seen) {
+    const Eigen::Vector3d corner_camera_m = T_camera_board * corners_board_m[i];
+    pixels.segment<2>(row) = true_camera.Project(corner_camera_m);
+    row += 2;
+  }
+  return pixels;
+}
+
+std::vector<std::size_t> SeenCorners(const BoardSample& sample, std::size_t num_corners) {
+  std::vector<std::size_t> seen;
+  if (sample.camera.corners_px.size() != num_corners) return seen;
+  for (std::size_t i = 0; i < num_corners; ++i) {
+    if (sample.camera.corners_px[i].allFinite()) seen.push_back(i);
+  }
+  return seen;
+}
+
+/// How the camera's board answers to faults, and what its corners are left with.
+struct CornerAnswer {
+  FaultJacobian board_by_fault = FaultJacobian::Zero();  // S, left perturbation
+  CornerTerms terms;
+};
+
+CornerAnswer AnswerOf(const BoardSample& sample,
+                      const Eigen::Isometry3d& T_camera_board,
+                      const BoardSpec& board,
+                      const CameraModel& camera) {
+  CornerAnswer answer;
+  const auto corners_board_m = board.InnerCornersBoardM();
+  const std::vector<std::size_t> seen = SeenCorners(sample, corners_board_m.size());
+  if (seen.size() < 4) return answer;
+  const auto num_rows = 2 * static_cast<Eigen::Index>(seen.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 6> J(num_rows, 6);
+  Eigen::Matrix<double, Eigen::Dynamic, kNumFaultParameters> L(num_rows, kNumFaultParameters);
+  Eigen::VectorXd e(num_rows);
+  Eigen::Index row = 0;
+  for (const std::size_t i : seen) {
+    const Eigen::Vector3d arm_m = T_camera_board.linear() * corners_board_m[i];
+    Matrix23d J_px_point;
+    Matrix36d J_point;
+    J_point << -Skew(arm_m), Eigen::Matrix3d::Identity();
+    e.segment<2>(row) =
+        ProjectWithJacobian(camera, T_camera_board.translation() + arm_m, &J_px_point) -
+        sample.camera.corners_px[i];
+    J.middleRows<2>(row) = J_px_point * J_point;
+    row += 2;
+  }
+  for (int i = 0; i < kNumFaultParameters; ++i) {
+    const FaultVector step = kStep * FaultVector::Unit(i);
+    L.col(i) = (PixelsWith(step, seen, T_camera_board, board, camera) -
+                PixelsWith(-step, seen, T_camera_board, board, camera)) /
+               (2 * kStep);
+  }
+  const Eigen::LDLT<Matrix6d> of_board(J.transpose() * J);
+  answer.board_by_fault = -of_board.solve(J.transpose() * L);
+  const Eigen::MatrixXd left = L + J * answer.board_by_fault;
+  const Eigen::VectorXd left_e = e - J * of_board.solve(J.transpose() * e);
+  answer.terms.num_rows = static_cast<int>(num_rows);
+  answer.terms.information.bottomRightCorner<kNumFaultParameters, kNumFaultParameters>() =
+      left.transpose() * left;
+  answer.terms.pull.tail<kNumFaultParameters>() = -left.transpose() * left_e;
+  answer.terms.squares = left_e.squaredNorm();
+  return answer;
 }
 
 // Across x, y and along the camera's ray to the centre; tilt and spin in the board's axes.
@@ -76,36 +154,41 @@ Vector6d Residual(const Eigen::Isometry3d& T_camera_lidar,
   return r;
 }
 
+template <typename At>
+Eigen::Matrix<double, 6, 6> Derivative(const At& at) {
+  Eigen::Matrix<double, 6, 6> J;
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d step = kStep * Vector6d::Unit(i);
+    J.col(i) = (at(step) - at(-step)) / (2 * kStep);
+  }
+  return J;
+}
+
 FaultEquation MakeEquation(const BoardSample& sample,
                            const BoardSpec& board,
                            const CameraModel& camera,
                            const Eigen::Isometry3d& T_camera_lidar) {
   const BoardPose lidar = LidarPoseInCameraOrder(sample, T_camera_lidar);
-  const auto camera_board = [&](const FaultVector& fault) {
-    return CameraBoardWith(fault, sample, board, camera)
-        .value_or(TransformFromPose(sample.camera.pose));
-  };
   const Eigen::Isometry3d T_lidar_board = LidarBoardWithout(0, lidar);
-  const Eigen::Isometry3d T_camera_board = camera_board(FaultVector::Zero());
-  const auto moved = [&](const Vector6d& delta) {
-    return Residual(PerturbLeft(T_camera_lidar, delta), T_lidar_board, T_camera_board);
-  };
-  const auto faulty = [&](const FaultVector& fault) {
-    return Residual(
-        T_camera_lidar, LidarBoardWithout(fault[kRangeOffset], lidar), camera_board(fault));
-  };
+  const Eigen::Isometry3d T_camera_board = TransformFromPose(sample.camera.pose);
+  const CornerAnswer camera_answer = AnswerOf(sample, T_camera_board, board, camera);
   FaultEquation equation;
   equation.sample_id = sample.id;
-  equation.r = moved(Vector6d::Zero());
-  for (int i = 0; i < kNumExtrinsicParameters; ++i) {
-    const Vector6d step = kExtrinsicStep * Vector6d::Unit(i);
-    equation.J.col(i) = (moved(step) - moved(-step)) / (2 * kExtrinsicStep);
-  }
-  for (int i = 0; i < kNumFaultParameters; ++i) {
-    const FaultVector step = kFaultSteps[i] * FaultVector::Unit(i);
-    equation.J.col(kNumExtrinsicParameters + i) =
-        (faulty(step) - faulty(-step)) / (2 * kFaultSteps[i]);
-  }
+  equation.corners = camera_answer.terms;
+  equation.r = Residual(T_camera_lidar, T_lidar_board, T_camera_board);
+  equation.J.leftCols<6>() = Derivative([&](const Vector6d& delta) {
+    return Residual(PerturbLeft(T_camera_lidar, delta), T_lidar_board, T_camera_board);
+  });
+  equation.J.rightCols<kNumFaultParameters>() =
+      Derivative([&](const Vector6d& delta) {
+        return Residual(T_camera_lidar, T_lidar_board, PerturbLeft(T_camera_board, delta));
+      }) *
+      camera_answer.board_by_fault;
+  const auto with_offset = [&](double offset_m) {
+    return Residual(T_camera_lidar, LidarBoardWithout(offset_m, lidar), T_camera_board);
+  };
+  equation.J.col(kNumExtrinsicParameters + kRangeOffset) =
+      (with_offset(kStep) - with_offset(-kStep)) / (2 * kStep);
   return equation;
 }
 
@@ -138,6 +221,15 @@ void Add(const FaultEquation& equation,
   }
   sum->H += sign * J.transpose() * J;
   sum->b -= sign * J.transpose() * r;
+  const double weight = sign * kIndependentCorners / (noise[kCorner] * noise[kCorner]);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    sum->b[row] += weight * equation.corners.pull[columns[i]];
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      sum->H(row, static_cast<Eigen::Index>(k)) +=
+          weight * equation.corners.information(columns[i], columns[k]);
+    }
+  }
 }
 
 NormalEquations SumOf(const std::vector<FaultEquation>& equations,
@@ -164,12 +256,29 @@ std::optional<Eigen::MatrixXd> InverseOf(const Eigen::MatrixXd& H) {
                          scale.cwiseInverse().asDiagonal());
 }
 
-ModelVector Scattered(const Eigen::VectorXd& fitted, const std::vector<int>& columns, double rest) {
-  ModelVector all = ModelVector::Constant(rest);
+ModelVector Scattered(const Eigen::VectorXd& fitted, const std::vector<int>& columns) {
+  ModelVector all = ModelVector::Zero();
   for (std::size_t i = 0; i < columns.size(); ++i) {
     all[columns[i]] = fitted[static_cast<Eigen::Index>(i)];
   }
   return all;
+}
+
+ModelMatrix Scattered(const Eigen::MatrixXd& fitted, const std::vector<int>& columns) {
+  ModelMatrix all = ModelMatrix::Zero();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    all.col(columns[i]) =
+        Scattered(Eigen::VectorXd(fitted.col(static_cast<Eigen::Index>(i))), columns);
+  }
+  return all;
+}
+
+double NumRows(const std::vector<FaultEquation>& equations, std::size_t kind) {
+  if (kind != kCorner) return kRowsOfKind[kind] * static_cast<double>(equations.size());
+  double num = 0;
+  for (const FaultEquation& equation : equations)
+    num += kIndependentCorners * equation.corners.num_rows;
+  return num;
 }
 
 std::array<double, kNumResidualKinds> SquaresOf(const std::vector<FaultEquation>& equations,
@@ -178,6 +287,9 @@ std::array<double, kNumResidualKinds> SquaresOf(const std::vector<FaultEquation>
   for (const FaultEquation& equation : equations) {
     const Vector6d left = equation.r + equation.J * value;
     for (int row = 0; row < 6; ++row) squares[KindOfRow(row)] += left[row] * left[row];
+    const CornerTerms& corners = equation.corners;
+    squares[kCorner] += kIndependentCorners * (corners.squares - 2 * corners.pull.dot(value) +
+                                               value.dot(corners.information * value));
   }
   return squares;
 }
@@ -186,19 +298,21 @@ double CentreErrorM(const FaultEquation& equation, const ModelVector& value) {
   return (equation.r + equation.J * value).head<3>().norm();
 }
 
-double HeldOutErrorM(const std::vector<FaultEquation>& equations,
-                     const std::vector<int>& columns,
-                     const NoiseLevels& noise) {
+// Infinite where the other samples leave a parameter open.
+std::vector<double> HeldOutErrorsM(const std::vector<FaultEquation>& equations,
+                                   const std::vector<int>& columns,
+                                   const NoiseLevels& noise) {
   const NormalEquations all = SumOf(equations, columns, noise);
-  double sum_m = 0;
+  std::vector<double> errors_m;
   for (const FaultEquation& equation : equations) {
     NormalEquations others = all;
     Add(equation, columns, noise, -1, &others);
     const auto inverse = InverseOf(others.H);
-    if (!inverse) return std::numeric_limits<double>::infinity();
-    sum_m += CentreErrorM(equation, Scattered(*inverse * others.b, columns, 0));
+    errors_m.push_back(
+        inverse ? CentreErrorM(equation, Scattered(Eigen::VectorXd(*inverse * others.b), columns))
+                : std::numeric_limits<double>::infinity());
   }
-  return sum_m / static_cast<double>(equations.size());
+  return errors_m;
 }
 
 }  // namespace
@@ -220,6 +334,20 @@ std::vector<FaultEquation> MakeFaultEquations(const std::vector<const BoardSampl
   return equations;
 }
 
+double FaultFit::StandardError(FaultParameter fault) const {
+  const int i = kNumExtrinsicParameters + fault;
+  return std::sqrt(covariance(i, i));
+}
+
+Vector6d FaultFit::ExtrinsicBy(FaultParameter fault) const {
+  const int i = kNumExtrinsicParameters + fault;
+  return covariance.block<6, 1>(0, i) / covariance(i, i);
+}
+
+CameraModel CameraWith(const FaultFit& fit, const CameraModel& given) {
+  return CameraWith(FaultVector(fit.value.tail<kNumFaultParameters>()), given);
+}
+
 FaultFit FitFaults(const std::vector<FaultEquation>& equations,
                    const std::vector<FaultParameter>& faults) {
   constexpr int kNumRounds = 20;  // the levels settle to a per mille within about ten
@@ -231,13 +359,13 @@ FaultFit FitFaults(const std::vector<FaultEquation>& equations,
     const NormalEquations sum = SumOf(equations, columns, fit.noise);
     const auto inverse = InverseOf(sum.H);
     if (!inverse) return {};
-    fit.value = Scattered(*inverse * sum.b, columns, 0);
-    fit.standard_error = Scattered(
-        inverse->diagonal().cwiseSqrt(), columns, std::numeric_limits<double>::quiet_NaN());
+    fit.value = Scattered(Eigen::VectorXd(*inverse * sum.b), columns);
+    fit.covariance = Scattered(*inverse, columns);
     fit.squares = SquaresOf(equations, fit.value);
     fit.log_likelihood = 0;
     for (std::size_t kind = 0; kind < fit.noise.size(); ++kind) {
-      const double num_rows = num_samples * kRowsOfKind[kind];
+      const double num_rows = NumRows(equations, kind);
+      if (num_rows == 0) continue;
       fit.noise[kind] = std::max(kLeastNoise[kind], std::sqrt(fit.squares[kind] / num_rows));
       fit.log_likelihood -= num_rows * std::log(fit.noise[kind]) +
                             fit.squares[kind] / (2 * fit.noise[kind] * fit.noise[kind]);
@@ -247,7 +375,10 @@ FaultFit FitFaults(const std::vector<FaultEquation>& equations,
   for (const double error_m : CentreErrorsM(equations, fit)) {
     fit.mean_error_m += error_m / num_samples;
   }
-  fit.mean_held_out_error_m = HeldOutErrorM(equations, columns, fit.noise);
+  fit.held_out_errors_m = HeldOutErrorsM(equations, columns, fit.noise);
+  for (const double error_m : fit.held_out_errors_m) {
+    fit.mean_held_out_error_m += error_m / num_samples;
+  }
   return fit;
 }
 

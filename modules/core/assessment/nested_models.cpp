@@ -4,26 +4,13 @@
 #include <cmath>
 #include <string>
 
+#include "core/assessment/suspects.hpp"
 #include "core/format.hpp"
+#include "core/geometry/rigid.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
-
-/// One group of parameters that may be added to the plain fit.
-struct Suspect {
-  const char* cause;
-  std::vector<FaultParameter> faults;
-  double least;  // of the parameters' length: smaller does not matter
-  double scale;  // from the parameter's unit to that of the text
-  const char* unit;
-};
-
-std::vector<Suspect> Suspects(const DiagnosisOptions& options) {
-  return {{"focal length", {kFocalScale}, options.min_focal_scale, 100, "%"},
-          {"principal point", {kPrincipalX, kPrincipalY}, options.min_principal_point_px, 1, "px"},
-          {"board's squares", {kSquareScale}, options.min_square_scale, 100, "%"},
-          {"lidar range offset", {kRangeOffset}, options.min_range_offset_m, 1000, "mm"}};
-}
 
 struct Candidate {
   Suspect suspect;
@@ -31,115 +18,125 @@ struct Candidate {
   double gain = 0;
 };
 
-double Length(const FaultFit& fit, const std::vector<FaultParameter>& faults) {
-  double sum = 0;
-  for (const FaultParameter fault : faults) {
-    sum += std::pow(fit.value[kNumExtrinsicParameters + fault], 2);
-  }
-  return std::sqrt(sum);
-}
-
-double LengthError(const FaultFit& fit, const std::vector<FaultParameter>& faults) {
-  double sum = 0;
-  for (const FaultParameter fault : faults) {
-    sum += std::pow(fit.standard_error[kNumExtrinsicParameters + fault], 2);
-  }
-  return std::sqrt(sum);
-}
-
-// "calibrate the camera ...": what the user can do about it, with the rig file's keys.
-std::string Remedy(FaultParameter fault) {
-  switch (fault) {
-    case kFocalScale:
-      return "check camera.fx_px and fy_px in the rig file, or calibrate the camera again";
-    case kPrincipalX:
-      return "check camera.cx_px and cy_px in the rig file, or calibrate the camera again";
-    case kSquareScale:
-      return "measure the squares and give them as board.square_m";
-    default:
-      return "take samples at more distances, which the refinement needs to take it out";
-  }
-}
-
-// "the focal length given is 2.0 +- 0.1 % too long": what is wrong with what was given.
-std::string Claim(const Suspect& suspect, const FaultFit& fit) {
-  const double value = suspect.scale * fit.value[kNumExtrinsicParameters + suspect.faults[0]];
-  const double error = suspect.scale * LengthError(fit, suspect.faults);
-  switch (suspect.faults[0]) {
-    case kFocalScale:
-      return Format("the focal length given is %.2f +- %.2f %% too %s",
-                    std::abs(value),
-                    error,
-                    value < 0 ? "long" : "short");
-    case kPrincipalX:
-      return Format(
-          "the true principal point lies %.1f px right and %.1f px below that given "
-          "(+- %.1f)",
-          value,
-          fit.value[kNumExtrinsicParameters + kPrincipalY],
-          error);
-    case kSquareScale:
-      return Format("the board's squares are given %.2f +- %.2f %% too %s",
-                    std::abs(value),
-                    error,
-                    value < 0 ? "large" : "small");
-    default:
-      return Format("the lidar's ranges are %.1f +- %.1f mm too %s",
-                    std::abs(value),
-                    error,
-                    value > 0 ? "long" : "short");
-  }
+Vector6d MoveBetween(const FaultFit& before, const FaultFit& after) {
+  return after.value.head<6>() - before.value.head<6>();
 }
 
 // Of the centres in space: kinds with other units cannot be added without their noise levels, which
 // differ between models.
 double CentreSquares(const FaultFit& fit) { return fit.squares[kAcross] + fit.squares[kAlong]; }
 
-Finding MakeFinding(const Candidate& candidate, const FaultFit& before) {
+// The result is wrong by a cause that moves it beyond its interval; by one that the rotation makes
+// good, only if lidar points land elsewhere in the image, too.
+void WeighMove(const Suspect& suspect,
+               const Vector6d& move,
+               const FaultFit& fit,
+               const JudgedResult& result,
+               Finding* finding) {
+  finding->moved_intervals = IntervalsOf(move, result.covariance);
+  finding->must_be_mended = finding->moved_intervals > 1;
+  finding->text += MoveText(move, result.covariance);
+  if (!suspect.trades_rotation || !finding->must_be_mended) return;
+  const Landing landing = LandingOf(CameraWith(fit, result.camera), move, result);
+  finding->must_be_mended = landing.intervals > 1;
+  finding->text += Format(
+      ", and lidar points in the image by %.1f px, %.1f times%s",
+      landing.px,
+      landing.intervals,
+      finding->must_be_mended ? "" : ": use it only together with the intrinsics that were given");
+}
+
+Finding MakeFinding(const Candidate& candidate,
+                    const FaultFit& before,
+                    const JudgedResult& result) {
   const FaultFit& fit = candidate.fit;
-  const std::vector<FaultParameter>& faults = candidate.suspect.faults;
+  const Suspect& suspect = candidate.suspect;
   Finding finding;
-  finding.cause = candidate.suspect.cause;
-  finding.value =
-      candidate.suspect.scale *
-      (faults.size() == 1 ? fit.value[kNumExtrinsicParameters + faults[0]] : Length(fit, faults));
-  finding.standard_error = candidate.suspect.scale * LengthError(fit, faults);
-  finding.unit = candidate.suspect.unit;
+  finding.cause = suspect.cause;
+  finding.value = suspect.scale *
+                  (suspect.faults.size() == 1 ? fit.Value(suspect.faults[0]) : suspect.Length(fit));
+  finding.standard_error = suspect.scale * suspect.LengthError(fit);
+  finding.unit = suspect.unit;
   finding.log_likelihood_gain = candidate.gain;
   finding.explained = 1 - CentreSquares(fit) / CentreSquares(before);
-  finding.held_out_before_mm = 1e3 * before.mean_held_out_error_m;
-  finding.held_out_after_mm = 1e3 * fit.mean_held_out_error_m;
-  finding.text = Claim(candidate.suspect, fit) +
-                 Format(
-                     ": explains %.0f %% of the centres' squared error in space; held out, it "
-                     "falls from %.1f to %.1f mm",
-                     100 * finding.explained,
-                     finding.held_out_before_mm,
-                     finding.held_out_after_mm) +
-                 "; " + Remedy(faults[0]);
+  finding.held_out_before_mm = kMmPerM * before.mean_held_out_error_m;
+  finding.held_out_after_mm = kMmPerM * fit.mean_held_out_error_m;
+  finding.text = suspect.claim(fit) + "; ";
+  WeighMove(suspect, MoveBetween(before, fit), fit, result, &finding);
+  finding.text += "; " + suspect.remedy(fit) +
+                  Format(
+                      " (explains %.0f %% of the centres' squared error in space; held out, it "
+                      "falls from %.1f to %.1f mm)",
+                      100 * finding.explained,
+                      finding.held_out_before_mm,
+                      finding.held_out_after_mm);
   return finding;
 }
 
+// By how many of its standard errors the mean error of poses held out falls: of pairs, as a pose
+// that is far off is so with both.
+double GainSigmas(const FaultFit& before, const FaultFit& fit) {
+  const auto num = static_cast<double>(fit.held_out_errors_m.size());
+  double sum = 0;
+  double sum2 = 0;
+  for (std::size_t i = 0; i < fit.held_out_errors_m.size(); ++i) {
+    const double gain = before.held_out_errors_m[i] - fit.held_out_errors_m[i];
+    sum += gain;
+    sum2 += gain * gain;
+  }
+  return sum / std::sqrt(std::max(sum2 - sum * sum / num, 0.0));
+}
+
+// Beyond chance, also for samples that it was not fitted to, and of consequence: it moves the
+// result beyond what is said of it.
 bool IsWorthAWord(const Candidate& candidate,
                   const FaultFit& before,
+                  const Matrix6d& covariance,
                   const DiagnosisOptions& options) {
+  // What no model has (edges that beams widen, a plate that is not quite flat) leaves errors that
+  // one parameter or another takes up in part, far beyond what white noise would: so the error of
+  // poses held out must fall, and for so many of them that it is no chance.
+  constexpr double kLeastHeldOutGain = 0.1;
+  constexpr double kLeastGainSigmas = 2.5;
   const FaultFit& fit = candidate.fit;
-  const std::vector<FaultParameter>& faults = candidate.suspect.faults;
-  const double length = Length(fit, faults);
-  return candidate.gain > options.min_log_likelihood_gain && length > candidate.suspect.least &&
-         length > 3 * LengthError(fit, faults) &&
-         fit.mean_held_out_error_m < (1 - options.min_held_out_gain) * before.mean_held_out_error_m;
+  return candidate.gain > options.min_log_likelihood_gain &&
+         candidate.suspect.Length(fit) > 3 * candidate.suspect.LengthError(fit) &&
+         fit.mean_held_out_error_m < (1 - kLeastHeldOutGain) * before.mean_held_out_error_m &&
+         GainSigmas(before, fit) > kLeastGainSigmas &&
+         IntervalsOf(MoveBetween(before, fit), covariance) > options.min_moved_intervals;
+}
+
+// What three sigma of a fault, which the samples could not tell, would do to the result.
+void SayWhatCouldHide(const std::vector<Candidate>& candidates,
+                      const Matrix6d& covariance,
+                      Diagnosis* diagnosis) {
+  constexpr double kSigmas = 3.0;
+  for (const Candidate& candidate : candidates) {
+    for (const FaultParameter fault : candidate.suspect.faults) {
+      const double hidden = kSigmas * candidate.fit.StandardError(fault);
+      const Vector6d move = hidden * candidate.fit.ExtrinsicBy(fault);
+      if (!(IntervalsOf(move, covariance) > 1)) continue;
+      diagnosis->not_judged.push_back(
+          Format("%s: an error of %.2g %s could hide in these samples; ",
+                 candidate.suspect.cause.c_str(),
+                 candidate.suspect.scale * hidden,
+                 candidate.suspect.unit.c_str()) +
+          MoveText(move, covariance));
+      break;  // the other parameters of a group are much alike
+    }
+  }
 }
 
 }  // namespace
 
 void JudgeModels(const std::vector<FaultEquation>& equations,
                  const std::vector<FaultParameter>& known,
+                 const JudgedResult& result,
                  const DiagnosisOptions& options,
                  Diagnosis* diagnosis) {
   FaultFit now = FitFaults(equations, known);
   std::vector<FaultParameter> fitted = known;
-  std::vector<Suspect> suspects = Suspects(options);
+  std::vector<Suspect> suspects = SuspectsOf(result.board, result.camera);
   const auto remove_suspects = [&suspects](const std::vector<FaultParameter>& faults) {
     suspects.erase(std::remove_if(suspects.begin(),
                                   suspects.end(),
@@ -147,28 +144,33 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
                    suspects.end());
   };
   for (const FaultParameter fault : known) remove_suspects({fault});
+  std::string open_causes;
   while (now.is_usable && !suspects.empty()) {
     std::vector<Candidate> candidates;
     for (const Suspect& suspect : suspects) {
       std::vector<FaultParameter> faults = fitted;
       faults.insert(faults.end(), suspect.faults.begin(), suspect.faults.end());
       Candidate candidate{suspect, FitFaults(equations, faults)};
-      if (!candidate.fit.is_usable) {
-        if (fitted == known) {
-          diagnosis->not_judged.push_back(std::string(suspect.cause) +
-                                          ": the samples leave it open");
-        }
-        continue;
+      if (candidate.fit.is_usable) {
+        candidate.gain = candidate.fit.log_likelihood - now.log_likelihood;
+        candidates.push_back(candidate);
+      } else if (fitted == known) {
+        open_causes += (open_causes.empty() ? "" : ", ") + suspect.cause;
       }
-      candidate.gain = candidate.fit.log_likelihood - now.log_likelihood;
-      if (IsWorthAWord(candidate, now, options)) candidates.push_back(candidate);
     }
-    const auto best = std::max_element(
-        candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-          return a.gain < b.gain;
-        });
-    if (best == candidates.end()) return;
-    diagnosis->findings.push_back(MakeFinding(*best, now));
+    if (fitted == known) {
+      if (!open_causes.empty()) {
+        diagnosis->not_judged.push_back(open_causes + ": the samples leave it open");
+      }
+      SayWhatCouldHide(candidates, result.covariance, diagnosis);
+    }
+    const Candidate* best = nullptr;
+    for (const Candidate& candidate : candidates) {
+      if (!IsWorthAWord(candidate, now, result.covariance, options)) continue;
+      if (best == nullptr || candidate.gain > best->gain) best = &candidate;
+    }
+    if (best == nullptr) return;
+    diagnosis->findings.push_back(MakeFinding(*best, now, result));
     now = best->fit;
     fitted.insert(fitted.end(), best->suspect.faults.begin(), best->suspect.faults.end());
     remove_suspects(std::vector<FaultParameter>(best->suspect.faults));

@@ -8,6 +8,8 @@
 namespace voqcal {
 namespace {
 
+constexpr const char* kRangeCause = "lidar range offset";  // a finding's
+
 /// Good up to the first, bad beyond the second; where more is better, the other way round.
 struct Limits {
   double good;
@@ -89,8 +91,11 @@ void AddFit(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
       kNormalDeg,
       "Lidar and camera disagree by " + Number(evidence.normal_deg, 2, "degrees") +
           " (mean) on where the board faces.",
-      "The lidar's ranges are probably biased, which the centres do not show: take more samples, "
-      "tilted to all sides.",
+      evidence.likeliest_cause == kRangeCause
+          ? "The lidar's ranges are probably biased, which the centres do not show: take more "
+            "samples, tilted to all sides."
+          : "Something that the centres do not show is wrong: the board's size, the camera's "
+            "intrinsics or the lidar's ranges. Check board and camera in the rig file.",
       checks);
 }
 
@@ -129,7 +134,20 @@ void AddPoses(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
       checks);
 }
 
-/// The scene's own word, where it has one, and the likeliest cause of what is wrong.
+/// A cause that makes the result wrong comes before all that it may have led to.
+void AddCause(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
+  const std::string& fault = evidence.likeliest_fault;
+  const Grade grade = fault.empty()             ? Grade::kGood
+                      : evidence.must_be_mended ? Grade::kBad
+                                                : Grade::kLook;
+  checks->insert(grade == Grade::kBad ? checks->begin() : checks->end(),
+                 {"Signs of a fault",
+                  grade,
+                  fault.empty() ? "Nothing was found that would explain the errors better."
+                                : Sentence(fault)});
+}
+
+/// The scene's own word, where it has one.
 void AddScene(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   if (evidence.scene != SceneVerdict::kNotJudged) {
     Add("The whole scene",
@@ -139,14 +157,9 @@ void AddScene(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
         "neither sensor was moved.",
         checks);
   }
-  const std::string& fault = evidence.likeliest_fault;
-  checks->push_back({"Signs of a fault",
-                     fault.empty() ? Grade::kGood : Grade::kLook,
-                     fault.empty() ? "Nothing was found that would explain the errors better."
-                                   : Sentence(fault)});
 }
 
-std::string Headline(Grade grade) {
+std::string Headline(Grade grade, const Evidence& evidence) {
   switch (grade) {
     case Grade::kGood:
       return "Good: use it. Nothing is to be done.";
@@ -155,6 +168,8 @@ std::string Headline(Grade grade) {
     case Grade::kBad:
       break;
   }
+  if (evidence.must_be_mended)
+    return "Do not use it: first mend the " + evidence.likeliest_cause + ".";
   return "Do not use it yet: mend what is marked below.";
 }
 
@@ -178,13 +193,14 @@ Verdict VerdictOf(const Evidence& evidence) {
   AddCertainty(evidence, &verdict.checks);
   AddPoses(evidence, &verdict.checks);
   AddScene(evidence, &verdict.checks);
+  AddCause(evidence, &verdict.checks);
   verdict.grade = std::max_element(verdict.checks.begin(),
                                    verdict.checks.end(),
                                    [](const VerdictCheck& a, const VerdictCheck& b) {
                                      return a.grade < b.grade;
                                    })
                       ->grade;
-  verdict.headline = Headline(verdict.grade);
+  verdict.headline = Headline(verdict.grade, evidence);
   return verdict;
 }
 

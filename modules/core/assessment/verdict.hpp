@@ -21,6 +21,8 @@ struct Evidence {
   SceneVerdict scene = SceneVerdict::kNotJudged;
   std::string scene_reason;
   std::string likeliest_fault;  ///< A sentence; empty: none was found.
+  std::string likeliest_cause;  ///< The same in a word or two.
+  bool must_be_mended = false;  ///< The result is wrong by it.
 };
 
 enum class Grade { kGood, kLook, kBad };
@@ -42,15 +44,5 @@ struct Verdict {
 };
 
 Verdict VerdictOf(const Evidence& evidence);
-
-/// Of the first of the findings, or of their messages, about which something is to be done; empty
-/// if there is none.
-template <typename Findings>
-std::string LikeliestFault(const Findings& findings) {
-  for (const auto& finding : findings) {
-    if (!finding.is_dealt_with) return finding.text;
-  }
-  return {};
-}
 
 }  // namespace voqcal

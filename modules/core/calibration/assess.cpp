@@ -1,4 +1,5 @@
 #include "core/calibration/calibrate.hpp"
+#include "core/calibration/likely_cause.hpp"
 #include "core/selection/voq.hpp"
 
 namespace voqcal {
@@ -27,6 +28,18 @@ LensCorrection LensCorrectionOf(const std::vector<const BoardSample*>& used,
                        task.options.refinement.likelihood);
   }
   return {};
+}
+
+/// Where many samples were left out: what would make them agree comes before what is said of the
+/// others.
+void AddLikelyCause(const ChosenSamples& chosen,
+                    const CalibrationTask& task,
+                    Diagnosis* diagnosis) {
+  constexpr double kMany = 0.15;  // of the samples
+  const auto num_left_out = static_cast<double>(chosen.rejected.size());
+  if (num_left_out <= kMany * static_cast<double>(chosen.samples.size())) return;
+  const auto likely = LikelyCause(chosen.samples, task);
+  if (likely) diagnosis->findings.insert(diagnosis->findings.begin(), *likely);
 }
 
 }  // namespace
@@ -62,8 +75,10 @@ Calibration Assess(const ChosenSamples& chosen,
                               task.board,
                               camera,
                               result.T_camera_lidar,
+                              result.covariance,
                               result.lidar_bias.common,
                               task.options.diagnosis);
+  AddLikelyCause(chosen, task, &result.diagnosis);
   result.lens_correction = LensCorrectionOf(used, result, task);
   result.e_dim_mm = MedianBoardDimensionErrorMm(chosen.samples, task.board);
   result.used_ids = IdsOf(used);

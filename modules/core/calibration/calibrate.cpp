@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "core/calibration/likely_cause.hpp"
 #include "core/selection/differences_from_others.hpp"
 
 namespace voqcal {
@@ -55,6 +56,8 @@ ChosenSets ChooseSets(const ChosenSamples& chosen, const CalibrationTask& task) 
     result.problem =
         "fewer than three samples that agree with each other: " + std::to_string(used.size()) +
         " of " + std::to_string(chosen.samples.size());
+    const auto likely = LikelyCause(chosen.samples, task);
+    if (likely) result.problem += "; likely cause: " + likely->cause + ": " + likely->text;
     return result;
   }
   result.sets = SelectSets(used, task.board, task.camera, options);

@@ -19,7 +19,13 @@ Evidence EvidenceOf(const Calibration& calibration) {
   evidence.num_cells = static_cast<int>(calibration.held_out_by_cell.size());
   evidence.scene = calibration.scene_check.verdict;
   evidence.scene_reason = calibration.scene_check.reason;
-  evidence.likeliest_fault = LikeliestFault(calibration.diagnosis.findings);
+  for (const Finding& finding : calibration.diagnosis.findings) {
+    if (finding.is_dealt_with) continue;
+    evidence.likeliest_fault = finding.text;
+    evidence.likeliest_cause = finding.cause;
+    evidence.must_be_mended = finding.must_be_mended;
+    break;
+  }
   return evidence;
 }
 

@@ -45,6 +45,7 @@ class Session {
                     given_board,
                     given_camera,
                     refined.T_camera_lidar,
+                    refined.covariance,
                     range_offset,
                     {});
   }
@@ -238,6 +239,7 @@ TEST(Diagnose, SaysWhatItCannotJudgeWithoutCorners) {
                                        test::TestBoard(),
                                        test::TestCamera(),
                                        test::TestExtrinsic(),
+                                       1e-6 * Matrix6d::Identity(),
                                        {},
                                        {});
   EXPECT_THAT(diagnosis.findings, IsEmpty());
@@ -246,18 +248,23 @@ TEST(Diagnose, SaysWhatItCannotJudgeWithoutCorners) {
 }
 
 TEST(Diagnose, NoSamplesAreTooFewPoses) {
-  EXPECT_EQ(
-      FirstCause(Diagnose(
-          {}, 0, test::TestBoard(), test::TestCamera(), Eigen::Isometry3d::Identity(), {}, {})),
-      "too few or too similar poses");
+  EXPECT_EQ(FirstCause(Diagnose({},
+                                0,
+                                test::TestBoard(),
+                                test::TestCamera(),
+                                Eigen::Isometry3d::Identity(),
+                                Matrix6d::Identity(),
+                                {},
+                                {})),
+            "too few or too similar poses");
 }
 
 TEST(DiagnosisOptions, NamesEachProblem) {
   DiagnosisOptions options;
-  options.min_held_out_gain = 0;
+  options.min_moved_intervals = 0;
   options.max_outlier_factor = -1;
   EXPECT_THAT(options.Problems(),
-              ::testing::ElementsAre("min_held_out_gain must be positive, is 0",
+              ::testing::ElementsAre("min_moved_intervals must be positive, is 0",
                                      "max_outlier_factor must be positive, is -1"));
 }
 

@@ -51,6 +51,33 @@ TEST(VerdictOf, IsAsBadAsItsWorstCheck) {
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = SceneVerdict::kDisagrees; }).grade, Grade::kBad);
 }
 
+TEST(VerdictOf, IsBadByACauseThatMustBeMendedWhichComesFirst) {
+  const Verdict verdict = JudgeWith([](Evidence* e) {
+    e->likeliest_fault = "the true fx is 2 % longer";
+    e->likeliest_cause = "focal length fx";
+    e->must_be_mended = true;
+  });
+  EXPECT_EQ(verdict.grade, Grade::kBad);
+  EXPECT_THAT(verdict.headline, HasSubstr("first mend the focal length fx"));
+  EXPECT_EQ(verdict.checks.front().text, "The true fx is 2 % longer.");
+}
+
+TEST(VerdictOf, SuspectsTheRangesOnlyWhereTheirOffsetIsTheCause) {
+  const auto text_with = [](const std::string& cause) {
+    const Verdict verdict = JudgeWith([&cause](Evidence* e) {
+      e->normal_deg = 1.5;
+      e->likeliest_fault = "a fault";
+      e->likeliest_cause = cause;
+    });
+    for (const VerdictCheck& check : verdict.checks) {
+      if (check.name == "Board directions") return check.text;
+    }
+    return std::string();
+  };
+  EXPECT_THAT(text_with("lidar range offset"), HasSubstr("ranges are probably biased"));
+  EXPECT_THAT(text_with("distortion"), testing::Not(HasSubstr("probably biased")));
+}
+
 TEST(VerdictOf, WantsMoreOfPosesAndParts) {
   const auto with_poses = [](int num) {
     return JudgeWith([num](Evidence* e) { e->num_used = e->num_samples = num; }).grade;

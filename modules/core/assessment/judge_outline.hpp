@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "core/assessment/diagnosis.hpp"
+#include "core/board/board_sample.hpp"
+#include "core/board/board_spec.hpp"
+#include "core/likelihood/lidar_bias.hpp"
+
+namespace voqcal {
+
+/// Compares the outline that was given with its edges as the lidar measures them freely: all of
+/// them, and the width against the height. Appends what differs to the findings.
+/// @param range_offset  that the result takes out of the lidar's ranges.
+void JudgeOutline(const std::vector<const BoardSample*>& samples,
+                  const BoardSpec& board,
+                  const BiasEstimate& range_offset,
+                  const DiagnosisOptions& options,
+                  Diagnosis* diagnosis);
+
+}  // namespace voqcal

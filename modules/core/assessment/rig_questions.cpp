@@ -1,0 +1,140 @@
+#include "core/assessment/rig_questions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/assessment/suspects.hpp"
+#include "core/board/half_turn.hpp"
+#include "core/format.hpp"
+
+namespace voqcal {
+namespace {
+
+// The rig file, with something else in it.
+RigQuestion AskAbout(const std::string& cause,
+                     const std::string& claim,
+                     const std::string& line,
+                     const std::function<void(BoardSpec*, CameraModel*)>& change) {
+  return {cause, claim, "give " + line + " in the rig file", [change](GivenSession* session) {
+            change(&session->board, &session->camera);
+            SeeBoardsAgain(session);
+          }};
+}
+
+void AskAboutLens(const CameraModel& camera, std::vector<RigQuestion>* questions) {
+  const auto& d = camera.distortion;
+  const bool is_straight = std::all_of(d.begin(), d.end(), [](double k) { return k == 0.0; });
+  const auto ask = [&](const char* cause, const char* claim, const CameraModel& other) {
+    std::string line = DistortionLine(other);
+    if (other.lens != camera.lens)
+      line = "camera.lens_model: " + ToString(other.lens) + ", " + line;
+    questions->push_back(
+        AskAbout(cause, claim, line, [other](BoardSpec*, CameraModel* said) { *said = other; }));
+  };
+  CameraModel other = camera;
+  other.lens =
+      camera.lens == LensModel::kEquidistant ? LensModel::kPlumbBob : LensModel::kEquidistant;
+  std::fill(other.distortion.begin() + 4, other.distortion.end(), 0.0);
+  ask("lens model", "the lens follows another model", other);
+  if (is_straight) return;
+  other = camera;
+  other.distortion = {};
+  ask("rectified images", "the images are rectified already", other);
+  for (std::size_t i = 0; i < d.size(); ++i) other.distortion[i] = -d[i];
+  ask("distortion", "the coefficients' signs are turned", other);
+  if (camera.lens == LensModel::kEquidistant) return;
+  other = camera;
+  other.distortion = {d[0], d[1], d[3], d[4], d[2], d[5], d[6], d[7]};
+  ask("distortion", "the coefficients are in another order, k1 k2 k3 p1 p2", other);
+}
+
+// Intrinsics go with one image size: their principal point is near its middle.
+void AskAboutImageSize(const CameraModel& camera, std::vector<RigQuestion>* questions) {
+  constexpr double kFarOff = 0.2;  // of the image's width, from its middle: no lens sits so askew
+  constexpr std::array<double, 8> kScales = {0.25, 1.0 / 3, 0.5, 2.0 / 3, 1.5, 2.0, 3.0, 4.0};
+  const double middle_px = 0.5 * (camera.width_px - 1);
+  if (std::abs(camera.cx_px - middle_px) < kFarOff * camera.width_px) return;
+  const auto off = [&](double scale) { return std::abs(scale * camera.cx_px - middle_px); };
+  const double scale = *std::min_element(
+      kScales.begin(), kScales.end(), [&](double a, double b) { return off(a) < off(b); });
+  CameraModel other = camera;
+  for (double* number : {&other.fx_px, &other.fy_px, &other.cx_px, &other.cy_px}) *number *= scale;
+  questions->push_back(AskAbout("image size",
+                                "the intrinsics are those of images of another size",
+                                Format("camera.fx_px: %g, fy_px: %g, cx_px: %g, cy_px: %g",
+                                       other.fx_px,
+                                       other.fy_px,
+                                       other.cx_px,
+                                       other.cy_px),
+                                [other](BoardSpec*, CameraModel* said) { *said = other; }));
+}
+
+void AskAboutPattern(const BoardSpec& board, std::vector<RigQuestion>* questions) {
+  const double x_m = board.pattern_offset_x_m;
+  const double y_m = board.pattern_offset_y_m;
+  for (const auto& [sign_x, sign_y] : {std::pair{-1, 1}, std::pair{1, -1}, std::pair{-1, -1}}) {
+    if ((sign_x < 0 && x_m == 0.0) || (sign_y < 0 && y_m == 0.0)) continue;
+    const double other_x_m = sign_x * x_m;
+    const double other_y_m = sign_y * y_m;
+    questions->push_back(AskAbout(
+        "sign of the pattern offset",
+        "the pattern lies to the other side of the plate's centre",
+        Format("board.pattern_offset_x_m: %g, pattern_offset_y_m: %g", other_x_m, other_y_m),
+        [=](BoardSpec* said, CameraModel*) {
+          said->pattern_offset_x_m = other_x_m;
+          said->pattern_offset_y_m = other_y_m;
+        }));
+  }
+  if (IsSquare(board.width_m, board.height_m)) return;
+  questions->push_back({"pattern across the plate",
+                        "the pattern lies across the plate",
+                        Format("swap board.num_corners_x and num_corners_y (%d and %d), or width_m "
+                               "and height_m, in the rig file",
+                               board.num_corners_x,
+                               board.num_corners_y),
+                        LayPatternAcross});
+}
+
+void AskAboutSensors(std::vector<RigQuestion>* questions) {
+  questions->push_back(
+      {"mirrored sensor",
+       "one sensor's data are mirrored: only a reflection takes the lidar's boards "
+       "to the camera's",
+       "publish clouds in a right-handed frame (x forward, y left, z up) and images "
+       "as they are seen",
+       MirrorLidar});
+  for (const int by : {1, -1}) {
+    questions->push_back(
+        {"shifted pairs",
+         Format("each image fits the sweep of the pair %s it", by > 0 ? "after" : "before"),
+         "check how images and sweeps are numbered or stamped",
+         [by](GivenSession* session) { ShiftPairs(-by, session); }});
+  }
+}
+
+void AskAboutSquares(const BoardSpec& board, std::vector<RigQuestion>* questions) {
+  for (const double scale : {0.1, 10.0}) {
+    const double square_m = scale * board.square_m;
+    questions->push_back(
+        AskAbout("board's squares",
+                 "the squares' decimal point is off by one",
+                 Format("board.square_m: %g", square_m),
+                 [square_m](BoardSpec* said, CameraModel*) { said->square_m = square_m; }));
+  }
+}
+
+}  // namespace
+
+std::vector<RigQuestion> QuestionsAbout(const BoardSpec& board, const CameraModel& camera) {
+  std::vector<RigQuestion> questions;
+  AskAboutLens(camera, &questions);
+  AskAboutImageSize(camera, &questions);
+  AskAboutPattern(board, &questions);
+  AskAboutSquares(board, &questions);
+  AskAboutSensors(&questions);
+  return questions;
+}
+
+}  // namespace voqcal

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/assessment/given_session.hpp"
+
+namespace voqcal {
+
+/// "What if the rig file said ...": one discrete mistake that people make, undone.
+struct RigQuestion {
+  std::string cause;   ///< "mirrored sensor", ...: one of a few.
+  std::string claim;   ///< What is wrong, half a sentence.
+  std::string remedy;  ///< The line to put into the rig file, or what else to do.
+  std::function<void(GivenSession* session)> undo;
+};
+
+/// Those that make sense of such a board and camera: a sign of an offset that is not zero, ...
+std::vector<RigQuestion> QuestionsAbout(const BoardSpec& board, const CameraModel& camera);
+
+}  // namespace voqcal

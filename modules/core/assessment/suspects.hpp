@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/assessment/fault_model.hpp"
+
+namespace voqcal {
+
+/// One group of parameters that may be added to the plain fit, and how to speak of it.
+struct Suspect {
+  std::string cause;  ///< One of a few.
+  std::vector<FaultParameter> faults;
+  bool trades_rotation = false;  ///< The extrinsic turns with it, and points land as before.
+  double scale = 1.0;            ///< From the first parameter's unit to that of the text.
+  std::string unit;
+  /// "the focal length given is 2.0 +- 0.1 % too long": what is wrong with what was given.
+  std::function<std::string(const FaultFit& fit)> claim;
+  /// What to do: the line to put into the rig file.
+  std::function<std::string(const FaultFit& fit)> remedy;
+
+  double Length(const FaultFit& fit) const;
+  double LengthError(const FaultFit& fit) const;
+};
+
+/// The line of the rig file: "camera.distortion: [-0.44, 0.23, 0, 0, 0]".
+std::string DistortionLine(const CameraModel& camera);
+
+/// Focal lengths, principal point, each distortion coefficient, squares, where the pattern lies on
+/// the plate, the lidar's ranges.
+std::vector<Suspect> SuspectsOf(const BoardSpec& board, const CameraModel& camera);
+
+}  // namespace voqcal

@@ -1,0 +1,75 @@
+#include "core/calibration/likely_cause.hpp"
+
+#include <cstddef>
+
+#include "core/assessment/rig_questions.hpp"
+#include "core/estimation/set_extrinsic.hpp"
+#include "core/format.hpp"
+#include "core/geometry/rigid.hpp"
+#include "core/selection/consistency.hpp"
+
+namespace voqcal {
+namespace {
+
+// Of samples whose distances agree, those that one extrinsic takes onto each other: it does not if
+// one sensor is mirrored, which distances do not show.
+std::size_t NumAgreeing(const std::vector<BoardSample>& samples,
+                        const ConsistencyOptions& options) {
+  constexpr std::size_t kLeast = 3;
+  const std::vector<BoardSample> consistent =
+      ConsistentSamples(samples, FindConsistent(samples, options));
+  if (consistent.size() < kLeast) return 0;
+  std::vector<const BoardSample*> all;
+  for (const BoardSample& sample : consistent) all.push_back(&sample);
+  const Eigen::Isometry3d T_camera_lidar = AnalyticExtrinsic(all);
+  std::size_t num = 0;
+  for (const BoardSample& sample : consistent) {
+    const Eigen::Vector3d off_m =
+        T_camera_lidar * sample.lidar.pose.centre_m - sample.camera.pose.centre_m;
+    const double angle_rad =
+        AngleBetween(T_camera_lidar.linear() * sample.lidar.pose.normal, sample.camera.pose.normal);
+    num += off_m.norm() < options.max_distance_m && angle_rad < options.max_angle_rad ? 1 : 0;
+  }
+  return num;
+}
+
+std::vector<BoardSample> WithoutPoints(std::vector<BoardSample> samples) {
+  for (BoardSample& sample : samples) {
+    sample.lidar.points_lidar_m = {};
+    for (LidarBoard& board : sample.runners_up) board.points_lidar_m = {};
+  }
+  return samples;
+}
+
+}  // namespace
+
+std::optional<Finding> LikelyCause(const std::vector<BoardSample>& samples,
+                                   const CalibrationTask& task) {
+  constexpr std::size_t kLeastSamples = 5;  // of fewer, three agree by chance
+  constexpr double kLeastShare = 0.5;       // of the samples, that agree by the right answer...
+  constexpr double kLeastGain = 0.3;        // ...and that did not before
+  if (samples.size() < kLeastSamples) return {};
+  const GivenSession given{task.board, task.camera, WithoutPoints(samples)};
+  const ConsistencyOptions& options = task.options.consistency;
+  const std::size_t num_before = NumAgreeing(given.samples, options);
+  const auto num_all = static_cast<double>(samples.size());
+  std::size_t most = num_before + static_cast<std::size_t>(kLeastGain * num_all);
+  std::optional<Finding> likely;
+  for (const RigQuestion& question : QuestionsAbout(task.board, task.camera)) {
+    GivenSession session = given;
+    question.undo(&session);
+    const std::size_t num = NumAgreeing(session.samples, options);
+    if (num <= most || static_cast<double>(num) < kLeastShare * num_all) continue;
+    most = num;
+    likely.emplace();
+    likely->cause = question.cause;
+    likely->must_be_mended = true;
+    likely->text =
+        question.claim + "; " + question.remedy +
+        Format(
+            " (%zu of %zu samples agree then, %zu do as it is)", num, samples.size(), num_before);
+  }
+  return likely;
+}
+
+}  // namespace voqcal

@@ -101,7 +101,8 @@ void AddOutline(const LikelihoodPose& pose,
   evidence->traces[3] += P(2, 2);
 }
 
-// One step, as in FitWithErrors. The posteriors come from the same equations as the estimates:
+// One step, as in FitWithErrors, the prior counting as a tenth of an observation: it keeps few
+// poses from a variance of zero. The posteriors come from the same equations as the estimates:
 // P = W - W Post W, of what is left of a sighting once all unknowns follow the data.
 Variances Step(const std::vector<LikelihoodPose>& poses,
                const LikelihoodState& state,
@@ -121,11 +122,12 @@ Variances Step(const std::vector<LikelihoodPose>& poses,
     AddChessboard(poses[i], state, i, share, step, covariance, noise, &evidence);
     AddOutline(poses[i], state, i, share, step, covariance, noise, &evidence);
   }
+  constexpr double kPriorWeight = 0.1;
   const Variances v = SquaresOf(noise.errors);
   Variances next{};
   for (std::size_t k = 0; k < v.size(); ++k) {
-    next[k] = std::sqrt((v[k] * v[k] * evidence.squares[k] + prior[k]) /
-                        (std::max(evidence.traces[k], 0.0) + 1.0 / v[k]));
+    next[k] = std::sqrt((v[k] * v[k] * evidence.squares[k] + kPriorWeight * prior[k]) /
+                        (std::max(evidence.traces[k], 0.0) + kPriorWeight / v[k]));
   }
   return next;
 }

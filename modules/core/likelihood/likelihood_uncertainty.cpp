@@ -76,6 +76,8 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
                      const Eigen::MatrixXd& gain,
                      const CameraModel& camera,
                      const LikelihoodOptions& options) {
+  // Who sees the chessboards better than expected was given better numbers, too.
+  const double trust = search.noise().errors.tilt_rad / options.camera_error_rad;
   const auto sensitivity = [&](const std::function<Vector6d(const LikelihoodPose&)>& board_shift) {
     const Eigen::Index num_lens = search.state().num_lens;
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(equations.pull.size());
@@ -97,18 +99,18 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
   Vector6d variance = Vector6d::Zero();
   if (search.state().num_lens == 0) {  // else the likelihood counts them
     variance += by_lens([&](const Eigen::Vector2d& pixel_px) -> Eigen::Vector2d {
-      return options.focal_length_error * (pixel_px - principal_point_px);
+      return trust * options.focal_length_error * (pixel_px - principal_point_px);
     });
     for (int axis = 0; axis < 2; ++axis) {
       variance += by_lens([&](const Eigen::Vector2d&) -> Eigen::Vector2d {
-        return options.principal_point_error_px * Eigen::Vector2d::Unit(axis);
+        return trust * options.principal_point_error_px * Eigen::Vector2d::Unit(axis);
       });
     }
   }
   // A larger board is as much farther away.
   variance += sensitivity([&](const LikelihoodPose& pose) {
     Vector6d shift = Vector6d::Zero();
-    shift.tail<3>() = options.board_size_error * pose.T_camera_board.translation();
+    shift.tail<3>() = trust * options.board_size_error * pose.T_camera_board.translation();
     return shift;
   });
   return variance.cwiseSqrt();

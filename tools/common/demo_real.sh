@@ -7,7 +7,7 @@ usage="usage: tools/demo --real RECORDING [--rig FILE] [--camera FILE] [--out DI
 Calibrates RECORDING and writes a report.
   RECORDING    a session of cam_lidar_calibration, a folder of images and clouds, an LCM log, or a recording of
                ROS: .bag, .mcap, .db3 or their folder
-  --rig FILE   the rig file; without it RECORDING/rig.yaml, and without that one is drafted
+  --rig FILE   the rig file; without it RECORDING/rig.yaml, else DIR/rig.yaml; without these, one is drafted
   --camera FILE, KEY=VALUE   what a drafted rig file must be told (board.width_m=0.61 ...): draft_rig --help
   --out DIR    where files go; logs/real/NAME unless said"
 
@@ -59,6 +59,9 @@ if [ -n "$rig" ] && [ ${#draft_args[@]} -gt 0 ]; then
   fail "$rig has the rig's numbers: leave out ${draft_args[*]}, or give --rig another file"
 fi
 
+# The one that was drafted before, perhaps refined since, unless numbers are told anew.
+[ -n "$rig" ] || [ ${#draft_args[@]} -gt 0 ] || [ ! -f "$out/rig.yaml" ] || rig=$out/rig.yaml
+
 step() { printf '\n== %s ==\n' "$*"; }
 
 # An installed voqcal, and who names another folder of programs, has them.
@@ -77,7 +80,7 @@ log=$recording
 
 if [ "$kind" = ros ]; then
   step "import"
-  log=$out/raw.lcm
+  log=$out/$name.lcm
   tools/import_ros "$recording" --out "$log" --force ${import_args[@]+"${import_args[@]}"} ${rig:+--rig "$rig"}
   if [ -z "$rig" ] && tools/import_ros "$recording" --print-camera >"$out/camera.yaml" 2>/dev/null; then
     [[ " ${draft_args[*]-} " == *" --camera "* ]] || draft_args+=(--camera "$out/camera.yaml")
@@ -91,7 +94,7 @@ if [ -z "$rig" ]; then
   [ "$kind" != ros ] || source=$log
   "$bin/draft_rig" "$source" ${draft_args[@]+"${draft_args[@]}"} --out "$rig" --force
 fi
-"$bin/check_rig" "$rig"
+"$bin/check_rig" "$rig" || [ $? -eq 3 ]  # 3: it can hardly be right, and it has said why
 
 if [ "$kind" = folder ]; then
   step "import"

@@ -1,6 +1,7 @@
 #include "import/session_folders.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>

@@ -35,6 +35,7 @@ const std::vector<std::string> kTools = {"calibrate",
                                          "evaluate",
                                          "export_extrinsic",
                                          "import_acfr",
+                                         "print_camera",
                                          "publish_extrinsic",
                                          "report"};
 

@@ -26,6 +26,11 @@ Vector6d MoveBetween(const FaultFit& before, const FaultFit& after) {
 // differ between models.
 double CentreSquares(const FaultFit& fit) { return fit.squares[kAcross] + fit.squares[kAlong]; }
 
+// Such a fault is there, also where the result's interval, widened by it, holds what it does.
+bool HalvesTheError(const FaultFit& before, const FaultFit& fit) {
+  return fit.mean_held_out_error_m < 0.5 * before.mean_held_out_error_m;
+}
+
 // The result is wrong by a cause that moves it beyond its interval; by one that the rotation makes
 // good, only if lidar points land elsewhere in the image, too.
 void WeighMove(const Suspect& suspect,
@@ -63,6 +68,7 @@ Finding MakeFinding(const Candidate& candidate,
   finding.held_out_after_mm = kMmPerM * fit.mean_held_out_error_m;
   finding.text = suspect.claim(fit) + "; ";
   WeighMove(suspect, MoveBetween(before, fit), fit, result, &finding);
+  if (HalvesTheError(before, fit)) finding.must_be_mended = true;
   finding.text += "; " + suspect.remedy(fit) +
                   Format(
                       " (explains %.0f %% of the centres' squared error in space; held out, it "
@@ -103,7 +109,8 @@ bool IsWorthAWord(const Candidate& candidate,
          candidate.suspect.Length(fit) > 3 * candidate.suspect.LengthError(fit) &&
          fit.mean_held_out_error_m < (1 - kLeastHeldOutGain) * before.mean_held_out_error_m &&
          GainSigmas(before, fit) > kLeastGainSigmas &&
-         IntervalsOf(MoveBetween(before, fit), covariance) > options.min_moved_intervals;
+         (HalvesTheError(before, fit) ||
+          IntervalsOf(MoveBetween(before, fit), covariance) > options.min_moved_intervals);
 }
 
 // What three sigma of a fault, which the samples could not tell, would do to the result.

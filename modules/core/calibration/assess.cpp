@@ -31,7 +31,7 @@ LensCorrection LensCorrectionOf(const std::vector<const BoardSample*>& used,
 }
 
 /// Where many samples were left out: what would make them agree comes before what is said of the
-/// others.
+/// others, unless that makes the result wrong by the likelihood of all that they tell.
 void AddLikelyCause(const ChosenSamples& chosen,
                     const CalibrationTask& task,
                     Diagnosis* diagnosis) {
@@ -39,7 +39,9 @@ void AddLikelyCause(const ChosenSamples& chosen,
   const auto num_left_out = static_cast<double>(chosen.rejected.size());
   if (num_left_out <= kMany * static_cast<double>(chosen.samples.size())) return;
   const auto likely = LikelyCause(chosen.samples, task);
-  if (likely) diagnosis->findings.insert(diagnosis->findings.begin(), *likely);
+  auto at = diagnosis->findings.begin();
+  while (at != diagnosis->findings.end() && at->must_be_mended) ++at;
+  if (likely) diagnosis->findings.insert(at, *likely);
 }
 
 }  // namespace

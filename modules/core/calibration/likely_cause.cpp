@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "core/assessment/rig_questions.hpp"
+#include "core/board/half_turn.hpp"
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
@@ -11,8 +12,9 @@
 namespace voqcal {
 namespace {
 
-// Of samples whose distances agree, those that one extrinsic takes onto each other: it does not if
-// one sensor is mirrored, which distances do not show.
+// Of samples whose distances agree, those that one extrinsic takes onto each other, the pattern's
+// turn in the plate too: it does not if one sensor is mirrored or the pattern lies across, which
+// distances do not show.
 std::size_t NumAgreeing(const std::vector<BoardSample>& samples,
                         const ConsistencyOptions& options) {
   constexpr std::size_t kLeast = 3;
@@ -24,11 +26,14 @@ std::size_t NumAgreeing(const std::vector<BoardSample>& samples,
   const Eigen::Isometry3d T_camera_lidar = AnalyticExtrinsic(all);
   std::size_t num = 0;
   for (const BoardSample& sample : consistent) {
-    const Eigen::Vector3d off_m =
-        T_camera_lidar * sample.lidar.pose.centre_m - sample.camera.pose.centre_m;
-    const double angle_rad =
-        AngleBetween(T_camera_lidar.linear() * sample.lidar.pose.normal, sample.camera.pose.normal);
-    num += off_m.norm() < options.max_distance_m && angle_rad < options.max_angle_rad ? 1 : 0;
+    const Eigen::Isometry3d T_camera_board_by_lidar =
+        T_camera_lidar * TransformFromPose(LidarPoseInCameraOrder(sample, T_camera_lidar));
+    const Eigen::Isometry3d off =
+        TransformFromPose(sample.camera.pose).inverse() * T_camera_board_by_lidar;
+    const double angle_rad = LogSO3(off.linear()).norm();
+    num += off.translation().norm() < options.max_distance_m && angle_rad < options.max_angle_rad
+               ? 1
+               : 0;
   }
   return num;
 }

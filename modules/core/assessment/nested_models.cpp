@@ -104,11 +104,13 @@ bool IsWorthAWord(const Candidate& candidate,
   // poses held out must fall, and for so many of them that it is no chance.
   constexpr double kLeastHeldOutGain = 0.1;
   constexpr double kLeastGainSigmas = 2.5;
+  constexpr double kPlain = 2.5;  // gains of normals and corners need no word of the centres'
   const FaultFit& fit = candidate.fit;
   return candidate.gain > options.min_log_likelihood_gain &&
          candidate.suspect.Length(fit) > 3 * candidate.suspect.LengthError(fit) &&
          fit.mean_held_out_error_m < (1 - kLeastHeldOutGain) * before.mean_held_out_error_m &&
-         GainSigmas(before, fit) > kLeastGainSigmas &&
+         (GainSigmas(before, fit) > kLeastGainSigmas ||
+          candidate.gain > kPlain * options.min_log_likelihood_gain) &&
          (HalvesTheError(before, fit) ||
           IntervalsOf(MoveBetween(before, fit), covariance) > options.min_moved_intervals);
 }

@@ -71,9 +71,9 @@ TEST(LensByName, RefusesAWrongNumberOfCoefficients) {
   for (const std::size_t num : {0U, 3U, 6U, 13U, 15U}) {
     EXPECT_FALSE(LensByName("plumb_bob", std::vector<double>(num))) << num;
   }
-  for (const std::size_t num : {3U, 5U}) {
-    EXPECT_FALSE(LensByName("equidistant", std::vector<double>(num))) << num;
-  }
+  EXPECT_FALSE(LensByName("equidistant", {0.1, 0.2, 0.3}));
+  EXPECT_FALSE(LensByName("equidistant", {0.1, 0.2, 0.3, 0.4, 0.5}));
+  EXPECT_TRUE(LensByName("equidistant", {0.1, 0.2, 0.3, 0.4, 0.0}));  // cam_lidar_calibration's
   EXPECT_FALSE(LensByName("rational", std::vector<double>(5)));
 }
 

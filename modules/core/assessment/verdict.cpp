@@ -19,8 +19,8 @@ struct Limits {
 constexpr Limits kHeldOutMm{5.0, 12.0};    // the method's paper reports means of 10 to 12 mm
 constexpr Limits kOverfitRatio{1.5, 3.0};  // 1.1 is common with 30 poses
 constexpr Limits kSigmaDeg{0.05, 0.2};     // 0.05 degrees is 9 mm at 10 m
-constexpr Limits kSigmaMm{3.0, 5.0};  // twice as much is 10 mm
-constexpr Limits kNormalDeg{0.7, 2.0};  // a clean simulated VLP-16 shows about 0.6
+constexpr Limits kSigmaMm{3.0, 5.0};       // twice as much is 10 mm
+constexpr Limits kNormalDeg{0.7, 2.0};     // a clean simulated VLP-16 shows about 0.6
 constexpr Limits kNumPoses{15, 6};
 constexpr Limits kNumCells{5, 2};  // of the 9 parts of the image
 constexpr Limits kLeftOutShare{0.15, 0.4};

@@ -89,8 +89,7 @@ SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
                           const LidarBias& bias);
 
 /// Refines `average` by each method, and takes the joint one (or the one that the options name).
-/// The likelihood needs points on most boards; without it the joint one is of the boards as
-/// detected, refined by the scenes.
+/// The likelihood needs points on most boards; without it and without scenes there is no joint one.
 /// @param views  of the samples' scenes; may be empty.
 /// @throws std::invalid_argument if `options` has Problems().
 BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,

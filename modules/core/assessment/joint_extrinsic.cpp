@@ -26,6 +26,10 @@ JointExtrinsic RefineJointly(const std::vector<const BoardSample*>& samples,
                              const CameraModel& camera,
                              const SceneRefinementOptions& options) {
   JointExtrinsic joint;
+  if (likelihood == nullptr && views.empty()) {
+    joint.problem = "there is nothing to join: no likelihood, no scenes";
+    return joint;
+  }
   joint.sightings = FitWithErrors(samples, camera, T_camera_lidar_start);
   if (!joint.sightings.is_usable) {
     joint.problem = "the boards leave the extrinsic open";

@@ -34,7 +34,7 @@ struct JointExtrinsic {
   Eigen::Isometry3d Without(const MixedFit& others, const LikelihoodExtrinsic* likelihood) const;
 };
 
-/// @param likelihood  null if there is none.
+/// @param likelihood  null if there is none; the scenes must then have something to say.
 JointExtrinsic RefineJointly(const std::vector<const BoardSample*>& samples,
                              const Eigen::Isometry3d& T_camera_lidar_start,
                              const LikelihoodExtrinsic* likelihood,

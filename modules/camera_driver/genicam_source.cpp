@@ -269,6 +269,8 @@ class GenicamSource : public CameraSource {
   }
 
   TimedImage ImageOf(ArvBuffer* buffer) {
+    // Of a frame with missing packets the camera's own time may be missing, too.
+    if (arv_buffer_get_status(buffer) != ARV_BUFFER_STATUS_SUCCESS) return {ArrivalOf(buffer), {}};
     const ExposureClock::Frame times{
         static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer) / 1000),
         ArrivalOf(buffer),
@@ -277,7 +279,6 @@ class GenicamSource : public CameraSource {
     if (num_frames_++ == 0) {
       spdlog::info("{}: image times are {} ({} us)", name_, clock_.Words(), exposure_us_ / 2);
     }
-    if (arv_buffer_get_status(buffer) != ARV_BUFFER_STATUS_SUCCESS) return image;
     const auto picture = PictureOf(FrameOf(buffer));
     if (picture) image.bytes = EncodeJpeg(*picture, options_.jpeg_quality);
     return image;

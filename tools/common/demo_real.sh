@@ -36,7 +36,8 @@ done
 [ -n "$recording" ] || fail "which recording?"$'\n'"$usage" 2
 [ -e "$recording" ] || fail "$recording: there is no such file or folder"
 cd "$root"
-name=$(basename "${recording%.*}")
+name=$(basename "$recording")
+case "$name" in *.bag | *.mcap | *.db3 | *.zstd | *.lcm) name=${name%%.*} ;; esac
 out=${out:-$root/logs/real/$name}
 
 kind_of() {  # RECORDING
@@ -59,8 +60,11 @@ if [ -n "$rig" ] && [ ${#draft_args[@]} -gt 0 ]; then
   fail "$rig has the rig's numbers: leave out ${draft_args[*]}, or give --rig another file"
 fi
 
-# The one that was drafted before, perhaps refined since, unless numbers are told anew.
-[ -n "$rig" ] || [ ${#draft_args[@]} -gt 0 ] || [ ! -f "$out/rig.yaml" ] || rig=$out/rig.yaml
+# The one that was drafted before of this very recording, perhaps refined since, unless numbers are told anew.
+if [ -z "$rig" ] && [ ${#draft_args[@]} -eq 0 ] && [ -f "$out/rig.yaml" ] &&
+  [ "$(cat "$out/recording.txt" 2>/dev/null)" = "$recording" ]; then
+  rig=$out/rig.yaml
+fi
 
 step() { printf '\n== %s ==\n' "$*"; }
 
@@ -76,6 +80,7 @@ fi
 build check_rig draft_rig decode_packets  # these first: who must be asked for numbers is asked soon
 require_programs
 mkdir -p "$out"
+[ -n "$rig" ] || printf '%s\n' "$recording" >"$out/recording.txt"
 log=$recording
 
 if [ "$kind" = ros ]; then

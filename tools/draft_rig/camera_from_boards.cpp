@@ -7,6 +7,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "core/camera_detection/calibration_target.hpp"
+#include "core/format.hpp"
 
 namespace voqcal {
 namespace {
@@ -79,7 +80,7 @@ std::optional<Fit> FitEquidistant(const Views& views, const cv::Size& size, cons
   cv::Mat D = cv::Mat::zeros(4, 1, CV_64F);
   std::vector<cv::Mat> rotations;
   std::vector<cv::Mat> translations;
-  Fit fit = start;  // the focal length's error is about the same
+  Fit fit;  // OpenCV does not say how well it knows the focal length
   fit.rms_px = cv::fisheye::calibrate(views.corners_board_m,
                                       views.corners_px,
                                       size,
@@ -123,12 +124,12 @@ std::string WordsOn(const Fit& fit, std::size_t num_boards) {
   char text[160];
   std::snprintf(text,
                 sizeof text,
-                "estimated from %zu boards in these images: %.2f px RMS, fx %.1f +- %.1f px",
+                "estimated from %zu boards in these images: %.2f px RMS, fx %.1f",
                 num_boards,
                 fit.rms_px,
-                fit.camera.fx_px,
-                fit.sigma_fx_px);
-  return text;
+                fit.camera.fx_px);
+  if (fit.sigma_fx_px == 0.0) return text;  // not known
+  return text + Format(" +- %.1f px", fit.sigma_fx_px);
 }
 
 }  // namespace

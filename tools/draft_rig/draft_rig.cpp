@@ -97,7 +97,9 @@ void AddEstimatedCamera(const DraftArgs& args, RigDraft* draft) {
 }
 
 void AddImageSize(const DraftArgs& args, RigDraft* draft) {
-  ForEachImage(args.recording, Channels{}.camera_image, 1, [&](const cv::Mat& grey) {
+  if (draft->Has("camera", "width_px") && draft->Has("camera", "height_px")) return;
+  const std::string channel = WithAnyCamera(*draft).channels.camera_image;
+  ForEachImage(args.recording, channel, 1, [&](const cv::Mat& grey) {
     draft->AddDefault("camera", "width_px", std::to_string(grey.cols));
     draft->AddDefault("camera", "height_px", std::to_string(grey.rows));
   });
@@ -142,8 +144,8 @@ void DraftRig(const DraftArgs& args) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Drafts a rig file from what a recording says. The board's numbers are asked for by name; "
-      "the camera is taken from --camera, from camera.yaml, camera_info.yaml or ost.yaml in the "
-      "folder, or estimated from the images of the board.",
+      "the camera is taken from --camera, from camera.yaml, camera_info.yaml, ost.yaml or "
+      "camchain.yaml in the folder, or estimated from the images of the board.",
       "draft_rig");
   voqcal::DraftArgs args;
   app.add_option("recording", args.recording, "A folder of images and clouds, or an LCM log")
@@ -152,7 +154,8 @@ int main(int argc, char** argv) {
       "numbers", args.numbers, "Keys of the rig file, as board.width_m=0.61 board.height_m=0.85");
   app.add_option("--camera",
                  args.camera,
-                 "The camera's calibration: ROS' (camera_matrix), cam_lidar_calibration's (K, D), "
+                 "The camera's calibration: Kalibr's camchain, ROS' (camera_matrix), "
+                 "cam_lidar_calibration's (K, D), "
                  "or a rig file's section");
   voqcal::AddOutputFile(&app, "The rig file to write", &args.out)->required();
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::DraftRig(args); });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 #include <stdexcept>
 
@@ -108,7 +109,7 @@ std::string RigDraft::MissingOfBoard() const {
 std::string RigDraft::Text() const {
   std::ostringstream text;
   text << "# Drafted by draft_rig; config/rigs/simulated_vlp16.yaml explains every option.\n"
-       << "rig: \"" << name_ << "\"\n";
+       << "rig: " << std::quoted(name_) << '\n';
   for (const auto& [name, section] : sections_) {
     text << '\n' << name << ":";
     if (!section.comment.empty()) text << "  # " << section.comment;

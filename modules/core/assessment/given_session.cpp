@@ -38,6 +38,15 @@ BoardPose Mirrored(const BoardPose& pose) {
   return mirrored;
 }
 
+void Mirror(LidarBoard* board) {
+  board->pose = Mirrored(board->pose);
+  std::swap(board->edge_lengths_m[1], board->edge_lengths_m[3]);
+  std::swap(board->sides[1], board->sides[3]);
+  for (LidarPoint& point : board->points_lidar_m.points) {
+    point.position_m.y() = -point.position_m.y();
+  }
+}
+
 }  // namespace
 
 void SeeBoardsAgain(GivenSession* session) {
@@ -54,11 +63,8 @@ void SeeBoardsAgain(GivenSession* session) {
 
 void MirrorLidar(GivenSession* session) {
   for (BoardSample& sample : session->samples) {
-    sample.lidar.pose = Mirrored(sample.lidar.pose);
-    std::swap(sample.lidar.edge_lengths_m[1], sample.lidar.edge_lengths_m[3]);
-    std::swap(sample.lidar.sides[1], sample.lidar.sides[3]);
-    for (LidarPoint& point : sample.lidar.points_lidar_m.points)
-      point.position_m.y() = -point.position_m.y();
+    Mirror(&sample.lidar);
+    for (LidarBoard& other : sample.runners_up) Mirror(&other);
   }
 }
 

@@ -24,7 +24,8 @@ struct EdgeErrors {
     ++num;
   }
   double MeanM() const { return sum_m / num; }
-  double VarianceM2() const { return std::max(1e-12, sum_m2 / num - MeanM() * MeanM()); }
+  // Edges that happen to agree are no better known than a lidar measures one.
+  double VarianceM2() const { return std::max(1e-6, sum_m2 / num - MeanM() * MeanM()); }
   double StandardErrorM() const { return std::sqrt(VarianceM2() / num); }
   double Gain() const { return 0.5 * num * std::log1p(MeanM() * MeanM() / VarianceM2()); }
 };
@@ -112,7 +113,8 @@ void JudgeOutline(const std::vector<const BoardSample*>& samples,
                   const DiagnosisOptions& options,
                   Diagnosis* diagnosis) {
   const OutlineErrors errors = LeastErrorsOf(samples, board, range_offset);
-  if (errors.widths.num == 0 || errors.heights.num == 0) return;
+  constexpr int kLeastEdges = 5;  // on each side: fewer may all be off alike
+  if (errors.widths.num < kLeastEdges || errors.heights.num < kLeastEdges) return;
   if (IsOneSideWrong(errors, options)) {
     diagnosis->findings.push_back(SideFinding(errors, board));
     return;

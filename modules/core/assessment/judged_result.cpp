@@ -16,7 +16,7 @@ constexpr double kSigmas95 = 1.959964;
 
 double IntervalsOf(const Vector6d& move, const Matrix6d& covariance) {
   const Vector6d interval = kSigmas95 * covariance.diagonal().cwiseSqrt();
-  return move.cwiseAbs().cwiseQuotient(interval).maxCoeff();
+  return move.cwiseAbs().cwiseQuotient(interval).maxCoeff<Eigen::PropagateNaN>();
 }
 
 std::string MoveText(const Vector6d& move, const Matrix6d& covariance) {

@@ -56,11 +56,14 @@ void AskAboutImageSize(const CameraModel& camera, std::vector<RigQuestion>* ques
   constexpr std::array<double, 8> kScales = {0.25, 1.0 / 3, 0.5, 2.0 / 3, 1.5, 2.0, 3.0, 4.0};
   const double middle_px = 0.5 * (camera.width_px - 1);
   if (std::abs(camera.cx_px - middle_px) < kFarOff * camera.width_px) return;
-  const auto off = [&](double scale) { return std::abs(scale * camera.cx_px - middle_px); };
+  // A pixel's middle has whole coordinates: the image begins half a pixel before 0.
+  const auto scaled = [](double px, double scale) { return scale * (px + 0.5) - 0.5; };
+  const auto off = [&](double scale) { return std::abs(scaled(camera.cx_px, scale) - middle_px); };
   const double scale = *std::min_element(
       kScales.begin(), kScales.end(), [&](double a, double b) { return off(a) < off(b); });
   CameraModel other = camera;
-  for (double* number : {&other.fx_px, &other.fy_px, &other.cx_px, &other.cy_px}) *number *= scale;
+  for (double* number : {&other.fx_px, &other.fy_px}) *number *= scale;
+  for (double* number : {&other.cx_px, &other.cy_px}) *number = scaled(*number, scale);
   questions->push_back(AskAbout("image size",
                                 "the intrinsics are those of images of another size",
                                 Format("camera.fx_px: %g, fy_px: %g, cx_px: %g, cy_px: %g",

@@ -21,10 +21,11 @@ struct CombinedExtrinsic {
 
 /// Weighs two estimates by their covariances: `robust` assumes little, `sharp` more. Both saw the
 /// same samples: if what `sharp` assumes is right, their difference has the difference of their
-/// variances (Hausman 1978, "Specification tests in econometrics", Econometrica 46). What it is
-/// beyond that, in each of the six directions by itself, is added to the variance of `sharp`, the
-/// moment estimate of DerSimonian and Laird 1986, "Meta-analysis in clinical trials", Controlled
-/// Clinical Trials 7: it counts less the less they agree. The covariance takes the two for fully
+/// variances (Hausman 1978, "Specification tests in econometrics", Econometrica 46), and were they
+/// independent, the sum. Beyond the variance of `robust`, in each of the six directions by itself,
+/// its square is added to the variance of `sharp`, the moment estimate of DerSimonian and Laird
+/// 1986, "Meta-analysis in clinical trials", Controlled Clinical Trials 7: it counts less the less
+/// they agree. The covariance takes the two for fully
 /// correlated as far as they tell the same.
 CombinedExtrinsic Combine(const UncertainExtrinsic& robust, const UncertainExtrinsic& sharp);
 

@@ -1,6 +1,19 @@
 #include "core/estimation/sighting_errors.hpp"
 
+#include <cmath>
+
 namespace voqcal {
+
+SightingVariances SquaresOf(const SightingErrors& errors) {
+  return {errors.along_ray_m * errors.along_ray_m,
+          errors.across_ray_m * errors.across_ray_m,
+          errors.tilt_rad * errors.tilt_rad,
+          errors.turn_rad * errors.turn_rad};
+}
+
+SightingErrors RootsOf(const SightingVariances& v) {
+  return {std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
+}
 
 std::array<Matrix6d, 4> UnitCovariances(const BoardPose& pose_camera) {
   const Eigen::Vector3d ray = pose_camera.centre_m.normalized();

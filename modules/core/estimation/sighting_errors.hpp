@@ -21,6 +21,11 @@ struct SightingErrors {
   Matrix6d CovarianceOf(const BoardPose& pose_camera) const;
 };
 
+/// Of SightingErrors, in its order.
+using SightingVariances = std::array<double, 4>;
+SightingVariances SquaresOf(const SightingErrors& errors);
+SightingErrors RootsOf(const SightingVariances& variances);
+
 /// By order of magnitude what boards of real rigs show (`voqcal_figures field --verbose`): normals
 /// of a biased lidar are off by about a degree, ranges by one or two centimetres.
 constexpr SightingErrors kPriorErrors{0.02, 0.005, 0.02, 0.005};

@@ -12,19 +12,6 @@
 namespace voqcal {
 namespace {
 
-using Variances = std::array<double, 4>;  // of SightingErrors, in its order
-
-Variances SquaresOf(const SightingErrors& errors) {
-  return {errors.along_ray_m * errors.along_ray_m,
-          errors.across_ray_m * errors.across_ray_m,
-          errors.tilt_rad * errors.tilt_rad,
-          errors.turn_rad * errors.turn_rad};
-}
-
-SightingErrors RootsOf(const Variances& v) {
-  return {std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
-}
-
 Eigen::Vector3d ToVector(const SharedErrors& shared) {
   return {shared.range_offset_m, shared.outline_lift_m, shared.outline_rise};
 }
@@ -95,7 +82,7 @@ struct Sighting {
   MixedDifference difference;
   std::array<Matrix6d, 4> units;
 
-  Matrix6d Weight(const Variances& variances) const {
+  Matrix6d Weight(const SightingVariances& variances) const {
     Matrix6d V = difference.C;
     for (std::size_t k = 0; k < units.size(); ++k) V += variances[k] * units[k];
     return V.llt().solve(Matrix6d::Identity());
@@ -117,10 +104,10 @@ std::vector<Sighting> SightingsAt(const std::vector<const BoardSample*>& samples
 //     P = V^-1 - V^-1 J (J' V^-1 J)^-1 J' V^-1
 // a variance v whose unit is U goes to
 //     sqrt((v^2 r'P U P r + s^2) / (tr(P U) + 1 / v)),   s^2: its prior's
-Variances Step(const std::vector<Sighting>& sightings,
-               const MixedFit& fit,
-               const Variances& v,
-               const Variances& prior) {
+SightingVariances Step(const std::vector<Sighting>& sightings,
+                       const MixedFit& fit,
+                       const SightingVariances& v,
+                       const SightingVariances& prior) {
   std::vector<Matrix6d> weights;
   MixedEquations equations(fit);
   for (const Sighting& each : sightings) {
@@ -128,8 +115,8 @@ Variances Step(const std::vector<Sighting>& sightings,
   }
   const Eigen::LLT<MixedMatrix> cholesky(equations.information);
   const MixedVector delta = cholesky.solve(equations.pull);
-  Variances squares{};
-  Variances traces{};
+  SightingVariances squares{};
+  SightingVariances traces{};
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const MixedDifference& d = sightings[i].difference;
     const Vector6d Pr = weights[i] * (d.r + d.J * delta);
@@ -140,7 +127,7 @@ Variances Step(const std::vector<Sighting>& sightings,
       traces[k] += P.cwiseProduct(sightings[i].units[k]).sum();
     }
   }
-  Variances next{};
+  SightingVariances next{};
   for (std::size_t k = 0; k < v.size(); ++k) {
     next[k] = std::sqrt((v[k] * v[k] * squares[k] + prior[k]) / (traces[k] + 1.0 / v[k]));
   }
@@ -172,8 +159,8 @@ MixedFit FitWithErrors(const std::vector<const BoardSample*>& samples,
                        const Eigen::Isometry3d& T_camera_lidar_start) {
   constexpr int kRounds = 2;  // the extrinsic hardly moves by its weights
   constexpr int kSteps = 60;  // to a percent
-  const Variances prior = SquaresOf(kPriorErrors);
-  Variances variances = prior;
+  const SightingVariances prior = SquaresOf(kPriorErrors);
+  SightingVariances variances = prior;
   MixedFit fit;
   fit.T_camera_lidar = T_camera_lidar_start;
   for (int round = 0; round < kRounds; ++round) {

@@ -5,7 +5,7 @@
 namespace voqcal {
 namespace {
 
-constexpr Eigen::Index kPoseFaultsIndex = 12;                      // common, dark step, rings
+constexpr Eigen::Index kPoseFaultsIndex = 12;  // common, dark step, lift, rise; then the rings
 constexpr Eigen::Index kNumDense = kPoseFaultsIndex + kFirstRing;  // all but the rings
 constexpr Eigen::Index kNumSeen = 5;                               // of a pose, by its returns
 constexpr double kCauchyWidth = 2.385;                             // 95 % efficient on normal noise

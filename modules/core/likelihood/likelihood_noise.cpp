@@ -12,19 +12,6 @@
 namespace voqcal {
 namespace {
 
-using Variances = std::array<double, 4>;  // of SightingErrors, in its order
-
-Variances SquaresOf(const SightingErrors& errors) {
-  return {errors.along_ray_m * errors.along_ray_m,
-          errors.across_ray_m * errors.across_ray_m,
-          errors.tilt_rad * errors.tilt_rad,
-          errors.turn_rad * errors.turn_rad};
-}
-
-SightingErrors RootsOf(const Variances& v) {
-  return {std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
-}
-
 SightingErrors PriorErrors(const LikelihoodOptions& options) {
   return {options.camera_error_m,
           options.outline_error_m,
@@ -34,14 +21,8 @@ SightingErrors PriorErrors(const LikelihoodOptions& options) {
 
 // r'P U P r and tr(P U) of each variance's unit U, with the names of FitWithErrors.
 struct Evidence {
-  Variances squares{};
-  Variances traces{};
-};
-
-// What a pose's unknowns are once the shared ones are: board = own - to_shared * shared.
-struct BoardGivenShared {
-  Vector6d own;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> to_shared;
+  SightingVariances squares{};
+  SightingVariances traces{};
 };
 
 void AddChessboard(const LikelihoodPose& pose,
@@ -104,12 +85,12 @@ void AddOutline(const LikelihoodPose& pose,
 // One step, as in FitWithErrors, the prior counting as a tenth of an observation: it keeps few
 // poses from a variance of zero. The posteriors come from the same equations as the estimates:
 // P = W - W Post W, of what is left of a sighting once all unknowns follow the data.
-Variances Step(const std::vector<LikelihoodPose>& poses,
-               const LikelihoodState& state,
-               const std::vector<PoseEquations>& returns,
-               const Eigen::VectorXd& prior_information,
-               const Variances& prior,
-               const LikelihoodNoise& noise) {
+SightingVariances Step(const std::vector<LikelihoodPose>& poses,
+                       const LikelihoodState& state,
+                       const std::vector<PoseEquations>& returns,
+                       const Eigen::VectorXd& prior_information,
+                       const SightingVariances& prior,
+                       const LikelihoodNoise& noise) {
   SharedEquations equations = Eliminate(poses, state, noise, returns);
   const Eigen::Index num_faults = state.faults_m.size();
   equations.information.diagonal().tail(num_faults) += prior_information;
@@ -123,8 +104,8 @@ Variances Step(const std::vector<LikelihoodPose>& poses,
     AddOutline(poses[i], state, i, share, step, covariance, noise, &evidence);
   }
   constexpr double kPriorWeight = 0.1;
-  const Variances v = SquaresOf(noise.errors);
-  Variances next{};
+  const SightingVariances v = SquaresOf(noise.errors);
+  SightingVariances next{};
   for (std::size_t k = 0; k < v.size(); ++k) {
     next[k] = std::sqrt((v[k] * v[k] * evidence.squares[k] + kPriorWeight * prior[k]) /
                         (std::max(evidence.traces[k], 0.0) + kPriorWeight / v[k]));
@@ -163,7 +144,7 @@ LikelihoodNoise EstimateNoise(const std::vector<LikelihoodPose>& poses,
   for (std::size_t i = 0; i < poses.size(); ++i) {
     returns.push_back(EquationsOfReturns(poses[i], state, i, noise.range_m));
   }
-  const Variances prior = SquaresOf(PriorErrors(options));
+  const SightingVariances prior = SquaresOf(PriorErrors(options));
   for (int i = 0; i < kSteps; ++i) {
     noise.errors = RootsOf(Step(poses, state, returns, prior_information, prior, noise));
   }

@@ -13,6 +13,7 @@ const LENSES = {
   pinhole: "plumb_bob",
   "pinhole-radtan": "plumb_bob",
   none: "plumb_bob",
+  "non-fisheye": "plumb_bob",
   rational_polynomial: "rational",
   rational: "rational",
   equidistant: "equidistant",

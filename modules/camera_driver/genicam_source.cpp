@@ -270,7 +270,9 @@ class GenicamSource : public CameraSource {
 
   TimedImage ImageOf(ArvBuffer* buffer) {
     // Of a frame with missing packets the camera's own time may be missing, too.
-    if (arv_buffer_get_status(buffer) != ARV_BUFFER_STATUS_SUCCESS) return {ArrivalOf(buffer), {}};
+    if (arv_buffer_get_status(buffer) != ARV_BUFFER_STATUS_SUCCESS) {
+      return {ArrivalOf(buffer).utime, {}};
+    }
     const ExposureClock::Frame times{
         static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer) / 1000),
         ArrivalOf(buffer),

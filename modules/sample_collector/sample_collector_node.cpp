@@ -95,8 +95,7 @@ void SampleCollectorNode::Republish() {
   // A stall of this process can pass for a silent second: only an empty queue shows that it was
   // one.
   const bool is_silent = !has_new_frames_ && was_idle_;
-  if (is_finish_requested_ && is_silent) Finish();
-  if (is_finish_requested_ && AreDetectorsPastFinish()) SayFinished();
+  if (is_finish_requested_ && (is_silent || AreDetectorsPastFinish())) Finish();
   has_new_frames_ = false;
   was_idle_ = false;
   PublishSamples();

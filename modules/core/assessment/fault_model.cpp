@@ -81,15 +81,6 @@ Eigen::VectorXd PixelsWith(const FaultVector& fault,
   return pixels;
 }
 
-std::vector<std::size_t> SeenCorners(const BoardSample& sample, std::size_t num_corners) {
-  std::vector<std::size_t> seen;
-  if (sample.camera.corners_px.size() != num_corners) return seen;
-  for (std::size_t i = 0; i < num_corners; ++i) {
-    if (sample.camera.corners_px[i].allFinite()) seen.push_back(i);
-  }
-  return seen;
-}
-
 /// How the camera's board answers to faults, and what its corners are left with.
 struct CornerAnswer {
   FaultJacobian board_by_fault = FaultJacobian::Zero();  // S, left perturbation
@@ -346,6 +337,10 @@ Vector6d FaultFit::ExtrinsicBy(FaultParameter fault) const {
 
 CameraModel CameraWith(const FaultFit& fit, const CameraModel& given) {
   return CameraWith(FaultVector(fit.value.tail<kNumFaultParameters>()), given);
+}
+
+BoardSpec BoardWith(const FaultFit& fit, const BoardSpec& given) {
+  return BoardWith(FaultVector(fit.value.tail<kNumFaultParameters>()), given);
 }
 
 FaultFit FitFaults(const std::vector<FaultEquation>& equations,

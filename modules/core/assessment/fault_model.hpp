@@ -96,6 +96,8 @@ struct FaultFit {
 
 /// The camera that was given, as `fit` says that it truly is.
 CameraModel CameraWith(const FaultFit& fit, const CameraModel& given);
+/// The board.
+BoardSpec BoardWith(const FaultFit& fit, const BoardSpec& given);
 
 /// Least squares with noise levels of their own for each kind of residual, estimated together with
 /// the parameters, which are the extrinsic and `faults`.

@@ -23,9 +23,9 @@ Suspect FocalLength(const char* cause,
                   fit.Value(fault) < 0 ? "long" : "short");
   };
   const Say remedy = [=](const FaultFit& fit) {
-    const double scale = 1 + fit.Value(fault);
-    const std::string fx = Format("camera.fx_px: %.1f", scale * camera.fx_px);
-    const std::string fy = Format("fy_px: %.1f", scale * camera.fy_px);
+    const CameraModel mended = CameraWith(fit, camera);
+    const std::string fx = Format("camera.fx_px: %.1f", mended.fx_px);
+    const std::string fy = Format("fy_px: %.1f", mended.fy_px);
     if (fault == kFocalXScale) return fx;
     return fault == kFocalYScale ? "camera." + fy : fx + ", " + fy;
   };
@@ -41,9 +41,8 @@ Suspect PrincipalPoint(const CameraModel& camera) {
         std::hypot(fit.StandardError(kPrincipalX), fit.StandardError(kPrincipalY)));
   };
   const Say remedy = [camera](const FaultFit& fit) {
-    return Format("camera.cx_px: %.1f, cy_px: %.1f",
-                  camera.cx_px + fit.Value(kPrincipalX),
-                  camera.cy_px + fit.Value(kPrincipalY));
+    const CameraModel mended = CameraWith(fit, camera);
+    return Format("camera.cx_px: %.1f, cy_px: %.1f", mended.cx_px, mended.cy_px);
   };
   return {"principal point", {kPrincipalX, kPrincipalY}, true, 1, "px", claim, remedy};
 }
@@ -58,11 +57,7 @@ Suspect Coefficient(int i, const CameraModel& camera) {
                   fit.StandardError(fault),
                   given);
   };
-  const Say remedy = [=](const FaultFit& fit) {
-    CameraModel other = camera;
-    other.distortion[static_cast<std::size_t>(i)] += fit.Value(fault);
-    return DistortionLine(other);
-  };
+  const Say remedy = [=](const FaultFit& fit) { return DistortionLine(CameraWith(fit, camera)); };
   return {"distortion", {fault}, false, 1, "", claim, remedy};
 }
 
@@ -74,7 +69,7 @@ Suspect Squares(const BoardSpec& board) {
                   fit.Value(kSquareScale) < 0 ? "large" : "small");
   };
   const Say remedy = [board](const FaultFit& fit) {
-    return Format("board.square_m: %.5f", board.square_m * (1 + fit.Value(kSquareScale)));
+    return Format("board.square_m: %.5f", BoardWith(fit, board).square_m);
   };
   return {"board's squares", {kSquareScale}, false, 100, "%", claim, remedy};
 }
@@ -89,9 +84,10 @@ Suspect PatternOffset(const BoardSpec& board) {
         kMmPerM * std::hypot(fit.StandardError(kPatternX), fit.StandardError(kPatternY)));
   };
   const Say remedy = [board](const FaultFit& fit) {
+    const BoardSpec mended = BoardWith(fit, board);
     return Format("board.pattern_offset_x_m: %.4f, pattern_offset_y_m: %.4f",
-                  board.pattern_offset_x_m + fit.Value(kPatternX),
-                  board.pattern_offset_y_m + fit.Value(kPatternY));
+                  mended.pattern_offset_x_m,
+                  mended.pattern_offset_y_m);
   };
   return {"pattern offset", {kPatternX, kPatternY}, false, kMmPerM, "mm", claim, remedy};
 }

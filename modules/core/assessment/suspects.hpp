@@ -17,7 +17,7 @@ struct Suspect {
   std::string unit;
   /// "the focal length given is 2.0 +- 0.1 % too long": what is wrong with what was given.
   std::function<std::string(const FaultFit& fit)> claim;
-  /// What to do: the line to put into the rig file.
+  /// What to do: the line to put into the rig file, with all that `fit` has found.
   std::function<std::string(const FaultFit& fit)> remedy;
 
   double Length(const FaultFit& fit) const;

@@ -16,4 +16,13 @@ bool IsCentreMeasured(const LidarBoard& board) {
   return eigenvalues[2] <= kMaxSigmaM * kMaxSigmaM;
 }
 
+std::vector<std::size_t> SeenCorners(const BoardSample& sample, std::size_t num_corners) {
+  std::vector<std::size_t> seen;
+  if (sample.camera.corners_px.size() != num_corners) return seen;
+  for (std::size_t i = 0; i < num_corners; ++i) {
+    if (sample.camera.corners_px[i].allFinite()) seen.push_back(i);
+  }
+  return seen;
+}
+
 }  // namespace voqcal

@@ -5,21 +5,13 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/board/what_was_measured.hpp"
 #include "core/estimation/left_perturbation.hpp"
 
 namespace voqcal {
 namespace {
 
 using Matrix2Ld = Eigen::Matrix<double, 2, kNumLensErrors>;
-
-std::vector<std::size_t> SeenCorners(const BoardSample& sample, std::size_t num_corners) {
-  std::vector<std::size_t> seen;
-  if (sample.camera.corners_px.size() != num_corners) return seen;
-  for (std::size_t i = 0; i < num_corners; ++i) {
-    if (sample.camera.corners_px[i].allFinite()) seen.push_back(i);
-  }
-  return seen;
-}
 
 // A pixel is linear in each error alone, so that central differences are exact but for rounding.
 Matrix2Ld PixelByLens(const CameraModel& camera, const Eigen::Vector3d& point_camera_m) {

@@ -25,66 +25,97 @@ struct Evidence {
   SightingVariances traces{};
 };
 
+// The shared unknowns' step to the minimum, and what is then known of them.
+struct SharedPosterior {
+  Eigen::VectorXd step;
+  Eigen::MatrixXd covariance;
+};
+
+// Of one pose at the minimum: its board follows the shared unknowns,
+//     board = own + by_shared * shared
+struct BoardPosterior {
+  const SharedPosterior& shared;
+  const Matrix6d& covariance;  // with the shared unknowns known
+  Vector6d own;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> by_shared;
+
+  BoardPosterior(const PoseShare& share, const SharedPosterior& all)
+      : shared(all),
+        covariance(share.board_covariance),
+        own(share.board_covariance * share.board_pull),
+        by_shared(-share.board_covariance * share.to_board.transpose()) {}
+};
+
+// What is left of a residual r + J_board board + J_shared shared, weighed: W r, and
+// P = W - W Post W.
+template <int kSize>
+struct Left {
+  Eigen::Matrix<double, kSize, 1> Pr;
+  Eigen::Matrix<double, kSize, kSize> P;
+
+  Left(const Eigen::Matrix<double, kSize, 1>& r,
+       const Eigen::Matrix<double, kSize, 6>& J_board,
+       Eigen::Matrix<double, kSize, Eigen::Dynamic> by_shared,
+       const Eigen::Matrix<double, kSize, kSize>& W,
+       const BoardPosterior& board) {
+    by_shared += J_board * board.by_shared;
+    Pr = W * (r + J_board * board.own + by_shared * board.shared.step);
+    P = W - W *
+                (J_board * board.covariance * J_board.transpose() +
+                 by_shared * board.shared.covariance * by_shared.transpose()) *
+                W;
+  }
+};
+
 void AddChessboard(const LikelihoodPose& pose,
                    const LikelihoodState& state,
                    std::size_t index,
-                   const PoseShare& share,
-                   const Eigen::VectorXd& shared_step,
-                   const Eigen::MatrixXd& shared_covariance,
+                   const BoardPosterior& board,
                    const LikelihoodNoise& noise,
                    Evidence* evidence) {
-  // r = r0 + board - S l, of which the board follows the shared unknowns.
-  Eigen::Matrix<double, 6, Eigen::Dynamic> by_shared =
-      -share.board_covariance * share.to_board.transpose();
-  if (state.num_lens > 0) by_shared.rightCols(state.num_lens) -= pose.lens.board_by_lens;
-  const Vector6d residual = DifferenceLeft(state.ByChessboard(pose), state.T_camera_board[index]) +
-                            share.board_covariance * share.board_pull + by_shared * shared_step;
-  const Matrix6d posterior =
-      share.board_covariance + by_shared * shared_covariance * by_shared.transpose();
-  const Matrix6d W = CameraCovariance(pose, noise).inverse();
-  const Vector6d Pr = W * residual;
-  const Matrix6d P = W - W * posterior * W;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> by_lens =
+      Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, board.by_shared.cols());
+  if (state.num_lens > 0) by_lens.rightCols(state.num_lens) = -pose.lens.board_by_lens;
+  const Left<6> left(DifferenceLeft(state.ByChessboard(pose), state.T_camera_board[index]),
+                     Matrix6d::Identity(),
+                     by_lens,
+                     CameraCovariance(pose, noise).inverse(),
+                     board);
   const Eigen::Vector3d ray = pose.T_camera_board.translation().normalized();
   const Eigen::Vector3d normal = pose.T_camera_board.linear().col(2);
-  const Eigen::Matrix3d P_turn = P.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d P_move = P.bottomRightCorner<3, 3>();
-  evidence->squares[0] += std::pow(ray.dot(Pr.tail<3>()), 2);
-  evidence->traces[0] += ray.dot(P_move * ray);
-  evidence->squares[2] += Pr.head<3>().squaredNorm() - std::pow(normal.dot(Pr.head<3>()), 2);
+  const Eigen::Vector3d turn = left.Pr.head<3>();
+  const Eigen::Matrix3d P_turn = left.P.topLeftCorner<3, 3>();
+  evidence->squares[0] += std::pow(ray.dot(left.Pr.tail<3>()), 2);
+  evidence->traces[0] += ray.dot(left.P.bottomRightCorner<3, 3>() * ray);
+  evidence->squares[2] += turn.squaredNorm() - std::pow(normal.dot(turn), 2);
   evidence->traces[2] += P_turn.trace() - normal.dot(P_turn * normal);
 }
 
 void AddOutline(const LikelihoodPose& pose,
                 const LikelihoodState& state,
                 std::size_t index,
-                const PoseShare& share,
-                const Eigen::VectorXd& shared_step,
-                const Eigen::MatrixXd& shared_covariance,
+                const BoardPosterior& board,
                 const LikelihoodNoise& noise,
                 Evidence* evidence) {
   const OutlineDifference outline = OutlineDifferenceAt(pose, state, index);
-  const Eigen::Matrix<double, 3, 6> J_board = outline.J.middleCols<6>(kBoardIndex);
   Eigen::Matrix<double, 3, Eigen::Dynamic> by_shared =
-      -J_board * share.board_covariance * share.to_board.transpose();
-  by_shared.leftCols<6>() += outline.J.leftCols<6>();
-  by_shared.middleCols<kFirstRing>(kExtrinsicSize) += outline.J.rightCols<kFirstRing>();
-  const Eigen::Vector3d residual = outline.residual +
-                                   J_board * (share.board_covariance * share.board_pull) +
-                                   by_shared * shared_step;
-  const Eigen::Matrix3d posterior = J_board * share.board_covariance * J_board.transpose() +
-                                    by_shared * shared_covariance * by_shared.transpose();
-  const Eigen::Matrix3d W = OutlineCovariance(pose, noise).inverse();
-  const Eigen::Vector3d Pr = W * residual;
-  const Eigen::Matrix3d P = W - W * posterior * W;
-  evidence->squares[1] += Pr.head<2>().squaredNorm();
-  evidence->traces[1] += P.topLeftCorner<2, 2>().trace();
-  evidence->squares[3] += Pr[2] * Pr[2];
-  evidence->traces[3] += P(2, 2);
+      Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, board.by_shared.cols());
+  by_shared.leftCols<6>() = outline.J.leftCols<6>();
+  by_shared.middleCols<kFirstRing>(kExtrinsicSize) = outline.J.rightCols<kFirstRing>();
+  const Left<3> left(outline.residual,
+                     outline.J.middleCols<6>(kBoardIndex),
+                     by_shared,
+                     OutlineCovariance(pose, noise).inverse(),
+                     board);
+  evidence->squares[1] += left.Pr.head<2>().squaredNorm();
+  evidence->traces[1] += left.P.topLeftCorner<2, 2>().trace();
+  evidence->squares[3] += left.Pr[2] * left.Pr[2];
+  evidence->traces[3] += left.P(2, 2);
 }
 
 // One step, as in FitWithErrors, the prior counting as a tenth of an observation: it keeps few
-// poses from a variance of zero. The posteriors come from the same equations as the estimates:
-// P = W - W Post W, of what is left of a sighting once all unknowns follow the data.
+// poses from a variance of zero. The outlines' robust weights are in the posteriors alone: gross
+// errors were left out before (FindOutlying), and a trace that they turn negative counts as none.
 SightingVariances Step(const std::vector<LikelihoodPose>& poses,
                        const LikelihoodState& state,
                        const std::vector<PoseEquations>& returns,
@@ -95,13 +126,14 @@ SightingVariances Step(const std::vector<LikelihoodPose>& poses,
   const Eigen::Index num_faults = state.faults_m.size();
   equations.information.diagonal().tail(num_faults) += prior_information;
   equations.pull.tail(num_faults) -= prior_information.cwiseProduct(state.faults_m);
-  const Eigen::MatrixXd covariance = equations.information.inverse();
-  const Eigen::VectorXd step = covariance * equations.pull;
+  SharedPosterior shared;
+  shared.covariance = equations.information.inverse();
+  shared.step = shared.covariance * equations.pull;
   Evidence evidence;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const PoseShare& share = equations.poses[i];
-    AddChessboard(poses[i], state, i, share, step, covariance, noise, &evidence);
-    AddOutline(poses[i], state, i, share, step, covariance, noise, &evidence);
+    const BoardPosterior board(equations.poses[i], shared);
+    AddChessboard(poses[i], state, i, board, noise, &evidence);
+    AddOutline(poses[i], state, i, board, noise, &evidence);
   }
   constexpr double kPriorWeight = 0.1;
   const SightingVariances v = SquaresOf(noise.errors);

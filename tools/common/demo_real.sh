@@ -87,8 +87,14 @@ if [ "$kind" = ros ]; then
   step "import"
   log=$out/$name.lcm
   tools/import_ros "$recording" --out "$log" --force ${import_args[@]+"${import_args[@]}"} ${rig:+--rig "$rig"}
-  if [ -z "$rig" ] && tools/import_ros "$recording" --print-camera >"$out/camera.yaml" 2>/dev/null; then
-    [[ " ${draft_args[*]-} " == *" --camera "* ]] || draft_args+=(--camera "$out/camera.yaml")
+  if [ -z "$rig" ] && [[ " ${draft_args[*]-} " != *" --camera "* ]]; then
+    if tools/import_ros "$recording" --print-camera ${import_args[@]+"${import_args[@]}"} >"$out/camera.new" 2>"$out/camera.why"; then
+      mv "$out/camera.new" "$out/camera.yaml"
+      draft_args+=(--camera "$out/camera.yaml")
+    elif ! grep -q "has 0 topics of type" "$out/camera.why"; then  # a recording without CameraInfo is no fault
+      fail "$(cat "$out/camera.why")"$'\n'"or give the camera's calibration: --camera FILE"
+    fi
+    rm -f "$out/camera.new" "$out/camera.why"
   fi
 fi
 

@@ -220,16 +220,21 @@ TEST(AprilGrid, FindsCornersThroughAFisheye) {
   EXPECT_GE(seen.num_corners, 90);
 }
 
-TEST(AprilGrid, FindsAPart) {
-  const Eigen::Isometry3d T_camera_board = BoardAhead(kAheadM, -0.25, 0.1);
-  cv::Mat image = Render(T_camera_board);
-  image.colRange(image.cols / 2, image.cols).setTo(110);
+// About half of the corners, where they are.
+void ExpectAPart(const cv::Mat& image, const Eigen::Isometry3d& T_camera_board) {
   const auto found = DetectCameraBoard(image, kCamera, Grid(), {});
   ASSERT_TRUE(found) << found.error().detail;
   const Seen seen = Compare(*found, kCamera, T_camera_board);
   EXPECT_LT(seen.rms_px, kTolerancePx);
   EXPECT_GE(seen.num_corners, 30);
   EXPECT_LE(seen.num_corners, 50);
+}
+
+TEST(AprilGrid, FindsAPart) {
+  const Eigen::Isometry3d T_camera_board = BoardAhead(kAheadM, -0.25, 0.1);
+  cv::Mat image = Render(T_camera_board);
+  image.colRange(image.cols / 2, image.cols).setTo(110);
+  ExpectAPart(image, T_camera_board);
 }
 
 TEST(AprilGrid, FindsCornersInBadLight) {
@@ -260,12 +265,7 @@ TEST(AprilGrid, IsNotMisledByAChessboardBesideIt) {
       image.at<unsigned char>(y, x) = (x / kSquarePx + y / kSquarePx) % 2 == 0 ? 30 : 220;
     }
   }
-  const auto found = DetectCameraBoard(image, kCamera, Grid(), {});
-  ASSERT_TRUE(found) << found.error().detail;
-  const Seen seen = Compare(*found, kCamera, T_camera_board);
-  EXPECT_LT(seen.rms_px, kTolerancePx);
-  EXPECT_GE(seen.num_corners, 30);
-  EXPECT_LE(seen.num_corners, 50);
+  ExpectAPart(image, T_camera_board);
 }
 
 // Boards there are all chessboards.

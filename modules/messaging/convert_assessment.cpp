@@ -31,10 +31,10 @@ scene_check_t ToMessage(const SceneCheck& check) {
   message.num_scenes = check.num_scenes;
   message.num_edges = check.num_edges;
   message.score = check.score;
-  message.averaged_score = check.averaged_score;
-  message.peak_score = check.peak_score;
-  Eigen::Map<Eigen::Vector3d>(message.offset_rad) = check.offset_rad;
-  Eigen::Map<Eigen::Vector3d>(message.sigma_rad) = check.sigma_rad;
+  message.asked_score = check.asked_score;
+  Eigen::Map<Vector6d>(message.asked) = check.asked;
+  Eigen::Map<Vector6d>(message.sigma) = check.sigma;
+  for (std::size_t i = 0; i < check.axes.size(); ++i) message.axes[i] = ToString(check.axes[i]);
   for (const SceneProbe& probe : check.probes) {
     scene_probe_t each{};
     Eigen::Map<Vector6d>(each.delta) = probe.delta;

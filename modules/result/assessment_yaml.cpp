@@ -24,6 +24,19 @@ std::string Number(const std::string& key, double value) {
   return std::isnan(value) ? "" : "    " + key + ": " + NumberText(value) + "\n";
 }
 
+std::string SceneAxisYaml(const SceneCheck& check) {
+  const char* const names[] = {
+      "turn_x_deg", "turn_y_deg", "turn_z_deg", "shift_x_mm", "shift_y_mm", "shift_z_mm"};
+  std::string text;
+  for (int i = 0; i < 6; ++i) {
+    const double unit = i < 3 ? kDegPerRad : 1e3;
+    text += std::string("  ") + names[i] + ": {asked: " + NumberText(unit * check.asked[i]) +
+            ", standard_error: " + NumberText(unit * check.sigma[i]) +
+            ", verdict: " + QuotedYaml(ToString(check.axes[static_cast<std::size_t>(i)])) + "}\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string QuotedYaml(const std::string& text) {
@@ -79,14 +92,11 @@ std::string SceneCheckYaml(const SceneCheck& check) {
       "\n  num_scenes: " + std::to_string(check.num_scenes) +
       "\n  num_edges: " + std::to_string(check.num_edges) + "\n";
   if (check.probes.empty()) return text;
-  const Eigen::Vector3d offset_deg = kDegPerRad * check.offset_rad;
-  const Eigen::Vector3d sigma_deg = kDegPerRad * check.sigma_rad;
   text +=
       "  # mean rank of the image gradient under the edges: 0.5 is chance\n  score: {refined: " +
-      NumberText(check.score) + ", averaged: " + NumberText(check.averaged_score) +
-      ", best_turn: " + NumberText(check.peak_score) + "}\n  # about the camera's axes\n" +
-      "  best_turn_deg: " + List(offset_deg) + "\n  standard_error_deg: " + List(sigma_deg) +
-      "\n  perturbed:  # delta: rotation_rad, then translation_m, left (camera) side\n";
+      NumberText(check.score) + ", asked: " + NumberText(check.asked_score) +
+      "}\n  # what the edges ask for, along and about the camera's axes\n" + SceneAxisYaml(check) +
+      "  perturbed:  # delta: rotation_rad, then translation_m, left (camera) side\n";
   for (const SceneProbe& probe : check.probes) {
     text += "    - {delta: " + List(probe.delta) + ", score: " + NumberText(probe.score) + "}\n";
   }

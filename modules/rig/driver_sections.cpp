@@ -5,22 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "rig/rig_path.hpp"
+
 namespace voqcal {
 namespace {
-
-std::filesystem::path Beside(const std::filesystem::path& rig_path, const std::string& path) {
-  if (path.empty()) return {};
-  return (rig_path.parent_path() / path).lexically_normal();
-}
-
-void ReadPath(const std::string& key,
-              const std::filesystem::path& rig_path,
-              YamlSection* section,
-              std::filesystem::path* path) {
-  std::string text;
-  section->Read(key, &text);
-  *path = Beside(rig_path, text);
-}
 
 /// What both drivers have in common.
 void ReadFrameOptions(const std::filesystem::path& rig_path,

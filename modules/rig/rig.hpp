@@ -21,6 +21,7 @@
 #include "core/lidar_packets/packet_stream.hpp"
 #include "core/sampling/sample_picker.hpp"
 #include "core/scene/scene_check.hpp"
+#include "core/scene/scene_window_options.hpp"
 #include "core/selection/consistency.hpp"
 #include "core/selection/select_sets.hpp"
 #include "core/simulation/simulation.hpp"
@@ -48,6 +49,7 @@ struct Channels {
   std::string simulated_board = "SIMULATED_BOARD";
   std::string module_status = "MODULE_STATUS";
   std::string camera_to_lidar = "CAMERA_TO_LIDAR";
+  std::string extrinsic_check = "EXTRINSIC_CHECK";
 };
 
 /// Frames without a clock of their own (folders, simulation) count from here: 2020-01-01T00:00:00Z,
@@ -115,6 +117,12 @@ struct LidarSensorOptions {
   std::vector<std::string> Problems() const;
 };
 
+/// What watches an extrinsic after the calibration.
+struct ExtrinsicMonitorOptions {
+  std::filesystem::path extrinsic;  ///< A result; empty: the session's.
+  SceneWindowOptions window;
+};
+
 /// Everything that a rig file says. Every option of every module has its place here.
 struct Rig {
   std::string name;
@@ -143,6 +151,7 @@ struct Rig {
   DiagnosisOptions diagnosis;     ///< Under assessor.
   DashboardOptions dashboard;
   GuidanceOptions pose_guide;
+  ExtrinsicMonitorOptions extrinsic_monitor;
 
   /// What of it the method needs.
   CalibrationTask Task() const;

@@ -1,5 +1,6 @@
 #include "rig/rig_sections.hpp"
 
+#include <initializer_list>
 #include <set>
 #include <variant>
 
@@ -9,6 +10,7 @@
 #include "rig/driver_sections.hpp"
 #include "rig/lcm_url.hpp"
 #include "rig/pose_guide_section.hpp"
+#include "rig/rig_path.hpp"
 
 namespace voqcal {
 namespace {
@@ -59,6 +61,7 @@ void ReadChannels(YamlSection* top, const std::string& prefix, Channels* channel
   read("simulated_board", &channels->simulated_board);
   read("module_status", &channels->module_status);
   read("camera_to_lidar", &channels->camera_to_lidar);
+  read("extrinsic_check", &channels->extrinsic_check);
   section.RefuseUnknownKeys();
 }
 
@@ -307,14 +310,26 @@ void ReadExtrinsicRefiner(YamlSection* top, RefinerOptions* options) {
   CheckAndClose(options->reprojection, &section);
 }
 
+void IgnoreRetired(std::initializer_list<const char*> keys, YamlSection* section) {
+  double ignored = 0;
+  for (const char* key : keys) {
+    if (section->Has(key)) section->Read(key, &ignored);
+  }
+}
+
 void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
   YamlSection section = assessor->Section("scene_check");
-  section.Read("min_edges", &options->min_edges);
-  section.Read("min_contrast", &options->min_contrast);
-  section.ReadDegrees("max_sigma_deg", &options->max_sigma_rad);
-  section.ReadDegrees("tolerance_deg", &options->tolerance_rad);
+  // Of recorded sessions' rig files: the check was another.
+  IgnoreRetired({"min_contrast", "max_sigma_deg", "tolerance_deg"}, &section);
+  section.Read("min_edges", &options->refinement.min_edges);
+  section.Read("min_gain_sigmas", &options->refinement.min_gain_sigmas);
+  section.ReadDegrees("turn_prior_deg", &options->turn_prior_rad);
+  section.Read("shift_prior_m", &options->shift_prior_m);
+  section.ReadDegrees("max_turn_sigma_deg", &options->max_turn_sigma_rad);
+  section.Read("max_shift_sigma_m", &options->max_shift_sigma_m);
+  section.ReadDegrees("turn_tolerance_deg", &options->turn_tolerance_rad);
+  section.Read("shift_tolerance_m", &options->shift_tolerance_m);
   section.Read("num_sigmas", &options->num_sigmas);
-  section.Read("min_gain_sigmas", &options->min_gain_sigmas);
   section.Read("min_jump_m", &options->view.edges.min_jump_m);
   section.ReadDegrees("max_step_deg", &options->view.edges.max_step_rad);
   section.Read("board_margin_m", &options->view.board_margin_m);
@@ -327,14 +342,12 @@ void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
 void ReadDiagnosis(YamlSection* assessor, DiagnosisOptions* options) {
   YamlSection section = assessor->Section("diagnosis");
   // Of recorded sessions' rig files: what moves the result matters now, whatever its size.
-  for (const char* retired : {"min_held_out_gain",
-                              "min_focal_scale",
-                              "min_principal_point_px",
-                              "min_square_scale",
-                              "min_range_offset_m"}) {
-    double ignored = 0;
-    if (section.Has(retired)) section.Read(retired, &ignored);
-  }
+  IgnoreRetired({"min_held_out_gain",
+                 "min_focal_scale",
+                 "min_principal_point_px",
+                 "min_square_scale",
+                 "min_range_offset_m"},
+                &section);
   section.Read("min_log_likelihood_gain", &options->min_log_likelihood_gain);
   section.Read("min_moved_intervals", &options->min_moved_intervals);
   section.Read("max_range_offset_m", &options->max_range_offset_m);
@@ -352,6 +365,17 @@ void ReadAssessor(YamlSection* top, SceneCheckOptions* scene_check, DiagnosisOpt
   ReadSceneCheck(&section, scene_check);
   ReadDiagnosis(&section, diagnosis);
   section.RefuseUnknownKeys();
+}
+
+void ReadExtrinsicMonitor(YamlSection* top,
+                          const std::filesystem::path& rig_path,
+                          ExtrinsicMonitorOptions* options) {
+  YamlSection section = top->Section("extrinsic_monitor");
+  ReadPath("extrinsic", rig_path, &section, &options->extrinsic);
+  section.Read("max_apart_s", &options->window.max_apart_s);
+  section.Read("every_s", &options->window.every_s);
+  section.Read("window_s", &options->window.window_s);
+  CheckAndClose(options->window, &section);
 }
 
 }  // namespace
@@ -380,6 +404,7 @@ void ReadRigSections(YamlDocument* document, Rig* rig) {
   ReadAssessor(&top, &rig->scene_check, &rig->diagnosis);
   ReadDashboard(&top, &rig->dashboard);
   ReadPoseGuide(&top, &rig->pose_guide);
+  ReadExtrinsicMonitor(&top, rig->path, &rig->extrinsic_monitor);
   rig->pose_guide.sensors.detector = rig->lidar_board_detector;
   top.RefuseUnknownKeys();
 }

@@ -2,23 +2,21 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <deque>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/tool_main.hpp"
-#include "core/scene/scene_agreement.hpp"
+#include "core/scene/scene_check.hpp"
 #include "core/units.hpp"
 #include "files/atomic_file.hpp"
 #include "files/transform_yaml.hpp"
 #include "messaging/bus.hpp"
-#include "messaging/convert_image.hpp"
-#include "messaging/convert_points.hpp"
 #include "messaging/log.hpp"
+#include "messaging/scene_window.hpp"
 #include "result/result_file.hpp"
 #include "rig/rig.hpp"
 #include "voqcal/image_t.hpp"
@@ -41,80 +39,40 @@ struct CheckArgs {
 };
 
 template <typename Message>
-std::optional<Message> Decode(const LogEvent& event) {
+void AddTo(const LogEvent& event, SceneWindow* window) {
   Message message{};
-  if (!DecodeMessage(event.bytes.data(), event.bytes.size(), &message).empty()) return {};
-  return message;
+  if (DecodeMessage(event.bytes.data(), event.bytes.size(), &message).empty()) window->Add(message);
 }
 
-// Sweeps with an image of about the same time, not all of a second's.
-class SceneCollector {
- public:
-  SceneCollector(const Rig& rig, const CheckArgs& args) : rig_(rig), args_(args) {}
-
-  bool IsFull() const { return static_cast<int>(views_.size()) >= args_.max_scenes; }
-  const std::vector<SceneView>& views() const { return views_; }
-
-  void Add(const LogEvent& event) {
-    if (event.channel == rig_.channels.lidar_points) Keep(Decode<pointcloud2_t>(event), &sweeps_);
-    if (event.channel == rig_.channels.camera_image) Keep(Decode<image_t>(event), &images_);
-    for (const pointcloud2_t& sweep : sweeps_) {
-      for (const image_t& image : images_) {
-        if (AddPair(sweep, image)) return;
-      }
-    }
-  }
-
- private:
-  // Either sensor's messages may come late by some of the other's.
-  template <typename Message>
-  static void Keep(std::optional<Message> message, std::deque<Message>* kept) {
-    constexpr std::size_t kNumKept = 5;
-    if (!message) return;
-    kept->push_back(std::move(*message));
-    if (kept->size() > kNumKept) kept->pop_front();
-  }
-
-  bool AddPair(const pointcloud2_t& sweep, const image_t& image) {
-    const double apart_us = static_cast<double>(std::abs(sweep.utime - image.utime));
-    if (apart_us > 1e3 * args_.max_apart_ms) return false;
-    if (last_utime_ && static_cast<double>(sweep.utime - *last_utime_) < 1e6 * args_.every_s) {
-      return false;
-    }
-    last_utime_ = sweep.utime;
-    views_.push_back(
-        MakeSceneView(FromMessage(sweep), FromMessage(image), rig_.camera, rig_.scene_check.view));
-    return true;
-  }
-
-  const Rig& rig_;
-  const CheckArgs& args_;
-  std::deque<pointcloud2_t> sweeps_;
-  std::deque<image_t> images_;
-  std::optional<std::int64_t> last_utime_;
-  std::vector<SceneView> views_;
-};
-
 std::vector<SceneView> ViewsOf(const Rig& rig, const CheckArgs& args) {
-  SceneCollector collector(rig, args);
+  std::map<std::string, int> unusable;
+  SceneWindow window(
+      rig.camera,
+      rig.scene_check.view,
+      {1e-3 * args.max_apart_ms, args.every_s, rig.extrinsic_monitor.window.window_s},
+      [&unusable](const std::string& reason) { ++unusable[reason]; });
   LogReader reader(args.log);
   try {
     while (const std::optional<LogEvent> event = reader.Next()) {
-      collector.Add(*event);
-      if (collector.IsFull()) break;
+      if (event->channel == rig.channels.lidar_points) AddTo<pointcloud2_t>(*event, &window);
+      if (event->channel == rig.channels.camera_image) AddTo<image_t>(*event, &window);
+      if (static_cast<int>(window.views().size()) >= args.max_scenes) break;
     }
   } catch (const TruncatedLogError&) {  // what came before the cut is good
   }
-  if (collector.views().empty()) {
-    throw std::runtime_error(args.log.string() + ": no sweep on " + rig.channels.lidar_points +
-                             " with an image on " + rig.channels.camera_image + " within " +
-                             std::to_string(static_cast<int>(args.max_apart_ms)) +
-                             " ms (see --max-apart-ms)");
+  for (const auto& [reason, count] : unusable) {
+    std::fprintf(stderr, "check_extrinsic: %d pairs make no scene: %s\n", count, reason.c_str());
   }
-  return collector.views();
+  if (window.views().empty()) {
+    throw std::runtime_error(
+        args.log.string() + ": no usable sweep on " + rig.channels.lidar_points +
+        " with an image on " + rig.channels.camera_image + " within " +
+        std::to_string(static_cast<int>(args.max_apart_ms)) + " ms (see --max-apart-ms)");
+  }
+  return window.views();
 }
 
-void Print(const SceneAgreement& agreement) {
+void Print(const SceneCheck& check) {
   const char* const names[] = {"turn about x",
                                "turn about y",
                                "turn about z",
@@ -122,36 +80,36 @@ void Print(const SceneAgreement& agreement) {
                                "shift along y",
                                "shift along z"};
   std::printf("%d scenes, %d depth edges in the images; camera axes: x right, y down, z forward\n",
-              agreement.refinement.num_scenes,
-              agreement.refinement.num_edges);
+              check.num_scenes,
+              check.num_edges);
   for (int i = 0; i < 6; ++i) {
     const double unit = i < 3 ? kDegPerRad : 1e3;
     std::printf("%-13s  %8.2f +- %5.2f %s  %s\n",
                 names[i],
-                unit * agreement.asked[i],
-                unit * agreement.sigma[i],
+                unit * check.asked[i],
+                unit * check.sigma[i],
                 i < 3 ? "deg" : "mm ",
-                ToString(agreement.axes[static_cast<std::size_t>(i)]).c_str());
+                ToString(check.axes[static_cast<std::size_t>(i)]).c_str());
   }
-  std::printf("the extrinsic: %s\n", ToString(agreement.all).c_str());
+  std::printf("the extrinsic: %s\n", ToString(check.verdict).c_str());
 }
 
 int Check(const CheckArgs& args) {
   const Rig rig = LoadRig(args.rig);
   const Eigen::Isometry3d T_camera_lidar = ReadExtrinsic(args.extrinsic);
-  const SceneAgreement agreement =
-      CheckAgreement(ViewsOf(rig, args), rig.camera, T_camera_lidar, {});
-  Print(agreement);
-  if (args.refine && agreement.all == Agreement::kCannotTell) {
+  const SceneCheck check =
+      CheckScene(ViewsOf(rig, args), rig.camera, T_camera_lidar, rig.scene_check);
+  Print(check);
+  if (args.refine && check.verdict == Agreement::kCannotTell) {
     std::printf("%s is not written: the scenes cannot tell\n", args.refine->c_str());
   } else if (args.refine) {
     WriteFileAtomically(*args.refine,
                         "T_camera_lidar:  # refined by scenes alone\n" +
-                            TransformYaml(PerturbLeft(T_camera_lidar, agreement.asked), "  "));
+                            TransformYaml(PerturbLeft(T_camera_lidar, check.asked), "  "));
     std::printf("written\n  %s\n", args.refine->c_str());
   }
-  if (agreement.all == Agreement::kDisagrees) return kExitDisagrees;
-  return agreement.all == Agreement::kAgrees ? EXIT_SUCCESS : kExitCannotTell;
+  if (check.verdict == Agreement::kDisagrees) return kExitDisagrees;
+  return check.verdict == Agreement::kAgrees ? EXIT_SUCCESS : kExitCannotTell;
 }
 
 }  // namespace

@@ -107,10 +107,7 @@ std::string SceneLines(const CalibrationResult& result) {
   const SceneCheck& check = result.scene_check;
   text += "scene check, without the board\n  " + ToString(check.verdict);
   if (!check.probes.empty()) {
-    text += Format(": score %.3f, averaged %.3f, best %.3f",
-                   check.score,
-                   check.averaged_score,
-                   check.peak_score);
+    text += Format(": score %.3f, of what it asks for %.3f", check.score, check.asked_score);
   }
   return text + "; " + check.reason + "\n";
 }

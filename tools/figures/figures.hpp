@@ -13,6 +13,7 @@ void AddField(CLI::App* app);
 void AddGuidance(CLI::App* app);
 void AddGuidanceBound(CLI::App* app);
 void AddMethods(CLI::App* app);
+void AddMonitor(CLI::App* app);
 void AddRepeatability(CLI::App* app);
 void AddSubsets(CLI::App* app);
 void AddVerdict(CLI::App* app);

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   voqcal::AddGuidanceBound(&app);
   voqcal::AddLidarDetection(&app);
   voqcal::AddMethods(&app);
+  voqcal::AddMonitor(&app);
   voqcal::AddRepeatability(&app);
   voqcal::AddSceneCheckPower(&app);
   voqcal::AddSubsets(&app);

@@ -42,7 +42,7 @@ void Print(const Args& args) {
     Vector6d delta = Vector6d::Zero();
     delta[axis] = turn_deg * kRadPerDeg;
     const Eigen::Isometry3d T_turned = PerturbLeft(T_camera_lidar, delta);
-    PrintRow(what, turn_deg, CheckScene(views, rig.camera, T_turned, T_turned, rig.scene_check));
+    PrintRow(what, turn_deg, CheckScene(views, rig.camera, T_turned, rig.scene_check));
   };
   print("none", 0, 0);
   const char* const names[] = {"x", "y", "z"};

@@ -149,9 +149,9 @@ void AddCause(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
 
 /// The scene's own word, where it has one.
 void AddScene(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
-  if (evidence.scene != SceneVerdict::kNotJudged) {
+  if (evidence.scene != Agreement::kCannotTell) {
     Add("The whole scene",
-        evidence.scene == SceneVerdict::kAgrees ? Grade::kGood : Grade::kBad,
+        evidence.scene == Agreement::kAgrees ? Grade::kGood : Grade::kBad,
         Sentence(evidence.scene_reason),
         "The scene contradicts the board: check the board and the camera in the rig file, and that "
         "neither sensor was moved.",

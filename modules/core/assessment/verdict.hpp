@@ -18,7 +18,7 @@ struct Evidence {
   int num_used = 0;
   int num_samples = 0;  ///< With those that were left out.
   int num_cells = 0;    ///< Of the 9 parts of the image, how many have a used pose.
-  SceneVerdict scene = SceneVerdict::kNotJudged;
+  Agreement scene = Agreement::kCannotTell;
   std::string scene_reason;
   std::string likeliest_fault;  ///< A sentence; empty: none was found.
   std::string likeliest_cause;  ///< The same in a word or two.

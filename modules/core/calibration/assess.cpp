@@ -70,7 +70,6 @@ Calibration Assess(const ChosenSamples& chosen,
   result.scene_check = CheckScene(scene_views ? scene_views(used) : std::vector<SceneView>(),
                                   camera,
                                   result.T_camera_lidar,
-                                  average.T_camera_lidar,
                                   task.options.scene_check);
   result.diagnosis = Diagnose(used,
                               static_cast<int>(chosen.rejected.size()),

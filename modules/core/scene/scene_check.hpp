@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -8,26 +9,32 @@
 
 #include "core/camera/camera_model.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/scene/scene_refinement.hpp"
 #include "core/scene/scene_view.hpp"
 
 namespace voqcal {
 
-/// When the scene's own edges contradict an extrinsic.
+/// When scenes contradict an extrinsic, without any board.
 struct SceneCheckOptions {
-  int min_edges = 300;         ///< Fewer depth edges in the image judge nothing.
-  double min_contrast = 0.05;  ///< The peak's score is that much above far perturbations'.
-  double max_sigma_rad =
-      0.0087266463;  ///< An axis known no better than this (0.5 deg) is left open.
-  /// An offset about an axis disagrees beyond this (0.2 deg), half a pixel of a sweep...
-  double tolerance_rad = 0.0034906585;
-  double num_sigmas = 3.0;  ///< ...and beyond so many of its standard errors,
-  /// if turning back costs so many standard errors of the score; else the scene does not say.
-  double min_gain_sigmas = 2.0;
+  // 1 sigma of what may have happened to the extrinsic.
+  double turn_prior_rad = 0.0087266463;  ///< 0.5 deg
+  double shift_prior_m = 0.02;
+  // An axis known no better than this is left open...
+  double max_turn_sigma_rad = 0.0017453293;  ///< 0.1 deg
+  double max_shift_sigma_m = 0.015;
+  // ... and disagrees beyond these and beyond so many of its standard errors.
+  double turn_tolerance_rad = 0.0026179939;  ///< 0.15 deg
+  double shift_tolerance_m = 0.02;
+  double num_sigmas = 3.0;
   SceneViewOptions view;
+  SceneRefinementOptions refinement;  ///< Its min_gain_sigmas is asked of what disagrees too.
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;
 };
+
+enum class Agreement { kCannotTell, kAgrees, kDisagrees };
+std::string ToString(Agreement agreement);  ///< "agrees", "disagrees", "cannot tell".
 
 /// The score of a perturbed extrinsic.
 struct SceneProbe {
@@ -35,41 +42,29 @@ struct SceneProbe {
   double score = std::numeric_limits<double>::quiet_NaN();
 };
 
-enum class SceneVerdict { kNotJudged, kAgrees, kDisagrees };
-std::string ToString(SceneVerdict verdict);  ///< "not judged", "agrees", "disagrees".
-
-/// What the scene says of an extrinsic, without any target.
-///
-/// A score is the mean rank (0 to 1) of the image gradient under the background's depth edges: 0.5
-/// for edges that have nothing to do with each other.
+/// What scenes say of an extrinsic. Scores are MeanEdgeRank's.
 struct SceneCheck {
-  SceneVerdict verdict = SceneVerdict::kNotJudged;
-  std::string reason;  ///< The verdict in a sentence.
+  Agreement verdict = Agreement::kCannotTell;  ///< Disagrees if an axis does; agrees if turns do.
+  std::string reason;                          ///< The verdict in a sentence.
   int num_scenes = 0;
   int num_edges = 0;  ///< Depth edges in the images, over all scenes.
+  /// PerturbLeft by it is what the scenes ask for, within the priors of the options.
+  Vector6d asked = Vector6d::Zero();
+  /// Its standard errors.
+  Vector6d sigma = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  std::array<Agreement, 6> axes{};
   double score = std::numeric_limits<double>::quiet_NaN();
-  double averaged_score = std::numeric_limits<double>::quiet_NaN();
-  std::vector<SceneProbe>
-      probes;  ///< Each axis both ways: 0.25, 0.5, 1, 2 deg; 25, 50, 100, 200 mm.
-  // The best score of any turn about the camera, with the translation kept, and where it is.
-  double peak_score = std::numeric_limits<double>::quiet_NaN();
-  Eigen::Vector3d offset_rad = kUnknown;  ///< PerturbLeft by it leads to the peak.
-  Eigen::Vector3d sigma_rad =
-      kUnknown;  ///< By fitting halves of the scene, and by the lines' spacing.
-  /// What the peak's score loses when it is turned back about an axis, in standard errors of that.
-  Eigen::Vector3d gain_sigmas = kUnknown;
+  double asked_score = std::numeric_limits<double>::quiet_NaN();  ///< Of what they ask for.
+  /// Each axis both ways: 0.25, 0.5, 1, 2 deg; 25, 50, 100, 200 mm.
+  std::vector<SceneProbe> probes;
 };
 
-/// Scores `T_camera_lidar` on every scene at once, so that what stands still counts in each and
-/// what moves averages out, and looks for a better one around it.
-///
-/// After Levinson and Thrun, Automatic Online Calibration of Cameras and Lasers (RSS 2013), which
-/// scores depth edges on image edges; ranks instead of strengths let no single bright edge decide.
+/// Where the scenes' edges want the extrinsic, by RefineByScene from a prior about it; all scenes
+/// at once, so that what stands still counts in each and what moves averages out.
 /// @throws std::invalid_argument if `options` has Problems().
 SceneCheck CheckScene(const std::vector<SceneView>& views,
                       const CameraModel& camera,
                       const Eigen::Isometry3d& T_camera_lidar,
-                      const Eigen::Isometry3d& T_camera_lidar_averaged,
                       const SceneCheckOptions& options);
 
 }  // namespace voqcal

@@ -19,7 +19,7 @@ Evidence GoodEvidence() {
   evidence.num_used = 30;
   evidence.num_samples = 31;
   evidence.num_cells = 7;
-  evidence.scene = SceneVerdict::kAgrees;
+  evidence.scene = Agreement::kAgrees;
   evidence.scene_reason = "the edges fit best 0.05 deg from it";
   return evidence;
 }
@@ -48,7 +48,7 @@ TEST(VerdictOf, IsAsBadAsItsWorstCheck) {
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->sigma_mm = 5; }).grade, Grade::kLook);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->num_samples = 40; }).grade, Grade::kLook);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->likeliest_fault = "a fault"; }).grade, Grade::kLook);
-  EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = SceneVerdict::kDisagrees; }).grade, Grade::kBad);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = Agreement::kDisagrees; }).grade, Grade::kBad);
 }
 
 TEST(VerdictOf, IsBadByACauseThatMustBeMendedWhichComesFirst) {
@@ -119,7 +119,7 @@ TEST(VerdictOf, SaysWhatToDoUnlessItIsGood) {
 
 TEST(VerdictOf, LeavesOutASceneThatSaysNothing) {
   const std::size_t num = VerdictOf(GoodEvidence()).checks.size();
-  EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = SceneVerdict::kNotJudged; }).checks.size(),
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = Agreement::kCannotTell; }).checks.size(),
             num - 1);
 }
 

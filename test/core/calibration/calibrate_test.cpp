@@ -35,7 +35,7 @@ TEST(Calibrate, FindsTheExtrinsicAndSaysWhatItIsMadeFrom) {
   EXPECT_THAT(calibration.used_ids, SizeIs(18));
   EXPECT_THAT(calibration.rejected, SizeIs(2));
   EXPECT_EQ(calibration.averaged.num_sets, 50);
-  EXPECT_EQ(calibration.scene_check.verdict, SceneVerdict::kNotJudged);
+  EXPECT_EQ(calibration.scene_check.verdict, Agreement::kCannotTell);
 }
 
 TEST(Calibrate, IsItsSteps) {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/edge_field.hpp"
-#include "core/scene/scene_agreement.hpp"
 #include "core/scene/scene_cost.hpp"
 #include "core/simulation/simulation.hpp"
 #include "support/synthetic_samples.hpp"
@@ -118,15 +117,6 @@ TEST_F(RefineBySceneTest, SurprisesHaveTheirNumericDerivatives) {
     }
   }
   EXPECT_GE(num_compared, 7 * 19);
-}
-
-TEST_F(RefineBySceneTest, AgreesWithTheTruthAndFindsAKnock) {
-  const SceneAgreement truth = CheckAgreement(*views_, Camera(), test::TestExtrinsic(), {});
-  EXPECT_NE(truth.all, Agreement::kDisagrees);
-  const SceneAgreement knocked = CheckAgreement(*views_, Camera(), TurnedAboutY(0.8), {});
-  EXPECT_EQ(knocked.all, Agreement::kDisagrees);
-  EXPECT_EQ(knocked.axes[1], Agreement::kDisagrees);
-  EXPECT_NEAR(knocked.asked[1], -0.8 * kDeg, 0.25 * kDeg);
 }
 
 TEST(SceneRefinementOptions, NamesEachProblem) {

@@ -7,12 +7,13 @@ namespace {
 
 TEST(ToMessage, OfASceneCheckCarriesVerdictTurnAndProbes) {
   SceneCheck check;
-  check.verdict = SceneVerdict::kDisagrees;
+  check.verdict = Agreement::kDisagrees;
   check.reason = "its edges fit best elsewhere";
   check.num_edges = 700;
   check.score = 0.7;
-  check.offset_rad = Eigen::Vector3d(0.1, 0.2, 0.3);
-  check.sigma_rad = Eigen::Vector3d(0.01, 0.02, 0.03);
+  check.asked << 0.1, 0.2, 0.3, 1, 2, 3;
+  check.sigma << 0.01, 0.02, 0.03, 0.1, 0.2, 0.3;
+  check.axes[1] = Agreement::kDisagrees;
   SceneProbe probe;
   probe.delta[4] = 0.5;
   probe.score = 0.6;
@@ -22,8 +23,10 @@ TEST(ToMessage, OfASceneCheckCarriesVerdictTurnAndProbes) {
   EXPECT_EQ(message.reason, check.reason);
   EXPECT_EQ(message.num_edges, 700);
   EXPECT_EQ(message.score, 0.7);
-  EXPECT_EQ(message.offset_rad[1], 0.2);
-  EXPECT_EQ(message.sigma_rad[2], 0.03);
+  EXPECT_EQ(message.asked[1], 0.2);
+  EXPECT_EQ(message.sigma[5], 0.3);
+  EXPECT_EQ(message.axes[0], "cannot tell");
+  EXPECT_EQ(message.axes[1], "disagrees");
   ASSERT_EQ(message.num_probes, 2);
   EXPECT_EQ(message.probes[1].delta[4], 0.5);
   EXPECT_EQ(message.probes[1].score, 0.6);

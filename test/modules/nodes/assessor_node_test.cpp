@@ -182,7 +182,7 @@ TEST_F(AssessorNodeTest, SaysThatThereIsNoSceneAndWhatItFound) {
   RunStagesBefore(test::NoisySamples(5), 5);
   Step(&node_);
   ASSERT_THAT(sent(), SizeIs(1));
-  EXPECT_EQ(sent()[0].scene_check.verdict, "not judged");
+  EXPECT_EQ(sent()[0].scene_check.verdict, "cannot tell");
   EXPECT_THAT(sent()[0].scene_check.reason, HasSubstr("no scene"));
   ASSERT_EQ(sent()[0].num_findings, 1);
   EXPECT_EQ(sent()[0].findings[0].cause, "too few or too similar poses");

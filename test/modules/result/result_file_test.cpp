@@ -74,10 +74,12 @@ TEST(ToYaml, SaysWhatTheAssessmentFound) {
   bin.score.poses.resize(3);
   result.held_out_by_cell = {bin};
   result.predicted = {{10, 1.5, 12, 2.5, 14}};
-  result.scene_check.verdict = SceneVerdict::kDisagrees;
+  result.scene_check.verdict = Agreement::kDisagrees;
   result.scene_check.reason = "its edges fit best elsewhere";
   result.scene_check.score = 0.75;
-  result.scene_check.offset_rad = Eigen::Vector3d(0, M_PI / 180, 0);
+  result.scene_check.asked[1] = M_PI / 180;
+  result.scene_check.asked[5] = 0.25;
+  result.scene_check.axes[1] = Agreement::kDisagrees;
   SceneProbe probe;
   probe.delta[2] = 0.5;
   probe.score = 0.625;
@@ -97,7 +99,9 @@ TEST(ToYaml, SaysWhatTheAssessmentFound) {
   EXPECT_EQ(yaml["predicted_errors"][0]["corner_px"].as<double>(), 2.5);
   EXPECT_EQ(yaml["scene_check"]["verdict"].as<std::string>(), "disagrees");
   EXPECT_EQ(yaml["scene_check"]["score"]["refined"].as<double>(), 0.75);
-  EXPECT_NEAR(yaml["scene_check"]["best_turn_deg"][1].as<double>(), 1, 1e-12);
+  EXPECT_NEAR(yaml["scene_check"]["turn_y_deg"]["asked"].as<double>(), 1, 1e-12);
+  EXPECT_EQ(yaml["scene_check"]["turn_y_deg"]["verdict"].as<std::string>(), "disagrees");
+  EXPECT_NEAR(yaml["scene_check"]["shift_z_mm"]["asked"].as<double>(), 250, 1e-9);
   EXPECT_EQ(yaml["scene_check"]["perturbed"][0]["delta"][2].as<double>(), 0.5);
   EXPECT_EQ(yaml["diagnosis"][0]["cause"].as<std::string>(), "focal length");
   EXPECT_EQ(yaml["diagnosis"][0]["text"].as<std::string>(), "given 2 % too \"long\"");

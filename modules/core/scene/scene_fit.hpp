@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/camera/camera_model.hpp"
+#include "core/geometry/rigid.hpp"
+#include "core/scene/scene_problem.hpp"
+#include "core/scene/scene_refinement.hpp"
+#include "core/scene/scene_view.hpp"
+
+namespace voqcal {
+
+/// Where scenes and a prior want an extrinsic, with all that it takes to ask further.
+struct SceneFit {
+  SceneProblem scene;
+  SceneTrust trust;
+  SceneVector unknowns = SceneVector::Zero();
+};
+
+/// Minimises RefineByScene's cost.
+/// @param edges  SceneEdgesInView of the same views and extrinsic.
+SceneFit FitScene(const std::vector<SceneView>& views,
+                  std::vector<SceneEdge> edges,
+                  const CameraModel& camera,
+                  const Eigen::Isometry3d& T_camera_lidar,
+                  const Matrix6d& covariance,
+                  const SceneRefinementOptions& options);
+
+/// Of the fitted extrinsic, as its cost bends; not wider than what was known without the scene.
+Matrix6d CovarianceOf(const SceneFit& fit, double shared_error_rad);
+
+/// How much better parts of the scene fit that were left out.
+struct HeldOutGain {
+  double mean = 0;  ///< Of the surprise.
+  double sigma = 0;
+};
+
+/// What some axes of the fit (0 to 5) are owed to: each sixth of the scene by what the others give,
+/// against what they give with these axes left where they were. Between scan lines lie plateaus,
+/// on which a fit strays far for nothing.
+HeldOutGain HeldOutGainOf(const SceneFit& fit, const std::vector<int>& axes, int max_iterations);
+
+/// Why scenes tell nothing, in words.
+std::string TooFewEdges(int num_scenes, int num_edges);
+
+}  // namespace voqcal

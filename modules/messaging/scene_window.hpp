@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera/camera_model.hpp"
+#include "core/scene/scene_view.hpp"
+#include "core/scene/scene_window_options.hpp"
+#include "voqcal/image_t.hpp"
+#include "voqcal/pointcloud2_t.hpp"
+
+namespace voqcal {
+
+/// The scenes of a stretch of time: sweeps with an image of about the same time, not all of a
+/// second's. Messages of the two sensors may come late by some of the other's.
+class SceneWindow {
+ public:
+  /// @param on_unusable  told of each pair that makes no scene, and why.
+  SceneWindow(const CameraModel& camera,
+              const SceneViewOptions& view,
+              const SceneWindowOptions& options,
+              std::function<void(const std::string& reason)> on_unusable);
+
+  void Add(const pointcloud2_t& sweep);
+  void Add(const image_t& image);
+
+  const std::vector<SceneView>& views() const { return views_; }
+  std::int64_t first_utime() const { return first_utime_; }  ///< Of its sweeps; 0 without any.
+  std::int64_t last_utime() const { return last_utime_; }
+  bool IsFull() const;  ///< It lasts window_s.
+
+  /// Begins a new stretch.
+  void Clear();
+
+ private:
+  void Pair();
+  bool TryPair(const pointcloud2_t& sweep, const image_t& image);
+
+  CameraModel camera_;
+  SceneViewOptions view_;
+  SceneWindowOptions options_;
+  std::function<void(const std::string&)> on_unusable_;
+  std::deque<pointcloud2_t> sweeps_;
+  std::deque<image_t> images_;
+  std::optional<std::int64_t> last_tried_utime_;
+  std::int64_t first_utime_ = 0;
+  std::int64_t last_utime_ = 0;
+  std::vector<SceneView> views_;
+};
+
+}  // namespace voqcal

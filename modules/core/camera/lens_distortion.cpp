@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -88,6 +89,29 @@ bool IsPositiveUpTo(const Coefficients& polynomial, double u_end) {
   return IsBernsteinPositive(bernstein, kMaxHalvings);
 }
 
+// Sums of |c_i| u^i and of 2 i |c_i| u^i, i > 0: how far P and 2 u P' can be from P(0) = 1 and 0.
+template <std::size_t N>
+std::pair<double, double> Reach(const std::array<double, N>& polynomial, double u) {
+  double sum = 0.0;
+  double slope = 0.0;
+  double power = 1.0;
+  for (std::size_t i = 1; i < N; ++i) {
+    power *= u;
+    sum += std::abs(polynomial[i]) * power;
+    slope += 2.0 * static_cast<double>(i) * std::abs(polynomial[i]) * power;
+  }
+  return {sum, slope};
+}
+
+// Whether the coefficients are too small to turn the growth anywhere on [0, u]: true for nearly all
+// points of nearly all lenses, and a tenth of the time of asking the polynomials.
+bool IsPlainlyGrowing(const Distortion& lens, double u) {
+  const auto [n, n_slope] = Reach(lens.numerator, u);
+  const auto [m, m_slope] = Reach(lens.denominator, u);
+  const double rising = 1.0 - n - n_slope;
+  return rising > 0.0 && m < 1.0 && rising * (1.0 - m) > (1.0 + n) * m_slope;
+}
+
 // What decides, for one lens, whether a point q of the plane lies on the growing branch.
 class Branch {
  public:
@@ -133,6 +157,8 @@ Eigen::Matrix2d DistortJacobian(const Distortion& lens, const Eigen::Vector2d& q
 }  // namespace
 
 bool IsOnGrowingBranch(const Distortion& lens, double max_radius, const Eigen::Vector2d& q) {
+  const double u = q.squaredNorm();
+  if (u < max_radius * max_radius && IsPlainlyGrowing(lens, u)) return true;
   return Branch(lens, max_radius).Contains(q);
 }
 

@@ -67,16 +67,33 @@ function(voqcal_program name)
   endif()
 endfunction()
 
-# voqcal_test(NAME SOURCES x_test.cpp LIBS x [LABELS l] [PROPERTIES p v ...]): one GoogleTest executable;
-# each TEST is one ctest test, with these properties of ctest.
+# voqcal_test(NAME SOURCES x_test.cpp LIBS x [LABELS system] [SHARDS n] [PROPERTIES p v ...]): one GoogleTest
+# executable. With LABELS each TEST is one ctest test, with these properties; else the executable is, in so many
+# shards (1 unless said): what a suite's tests share is made once, and hundreds of libraries are loaded once.
 function(voqcal_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LIBS;LABELS;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(arg "" "SHARDS" "SOURCES;LIBS;LABELS;PROPERTIES" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
   voqcal_target_defaults(${name})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test)
   target_compile_definitions(${name} PRIVATE VOQCAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gmock GTest::gtest_main)
-  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" ${arg_PROPERTIES}
-    DISCOVERY_TIMEOUT 60)
+  if(arg_LABELS)
+    gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" ${arg_PROPERTIES}
+      DISCOVERY_TIMEOUT 60)
+    return()
+  endif()
+  if(NOT arg_SHARDS)
+    set(arg_SHARDS 1)
+  endif()
+  math(EXPR last "${arg_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    set(test ${name})
+    if(arg_SHARDS GREATER 1)
+      string(APPEND test .${shard})
+    endif()
+    add_test(NAME ${test} COMMAND ${name})
+    set_tests_properties(${test} PROPERTIES ${arg_PROPERTIES}
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
 endfunction()

@@ -17,6 +17,7 @@ void AddMonitor(CLI::App* app);
 void AddRepeatability(CLI::App* app);
 void AddSubsets(CLI::App* app);
 void AddVerdict(CLI::App* app);
+void AddWrongModels(CLI::App* app);
 
 void AddCameraDetection(CLI::App* app);
 void AddLidarDetection(CLI::App* app);

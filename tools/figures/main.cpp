@@ -21,5 +21,6 @@ int main(int argc, char** argv) {
   voqcal::AddSceneCheckPower(&app);
   voqcal::AddSubsets(&app);
   voqcal::AddVerdict(&app);
+  voqcal::AddWrongModels(&app);
   return voqcal::RunTool(&app, argc, argv, [] {});
 }

@@ -1,9 +1,12 @@
 #include "figures/simulated_session.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "core/sampling/sample_picker.hpp"
 #include "core/selection/consistency.hpp"
+#include "core/simulation/simulation.hpp"
+#include "support/synthetic_samples.hpp"
 
 namespace voqcal {
 
@@ -34,6 +37,35 @@ std::vector<BoardSample> SimulateSession(const Rig& rig, const SimulationOptions
     samples.push_back(sample);
   }
   return ConsistentSamples(samples, FindConsistent(samples, rig.consistency));
+}
+
+std::vector<BoardSample> SimulateProjected(const Rig& rig,
+                                           const SimulationOptions& simulation,
+                                           const SpoiltWorld& spoilt) {
+  constexpr double kCornerNoisePx = 0.1;
+  const Simulation world(simulation, rig.board, rig.camera);
+  test::Random random(simulation.seed);
+  std::vector<BoardSample> samples;
+  for (int stop = 0; stop < simulation.num_poses; ++stop) {
+    const double time_s = stop * (simulation.hold_s + simulation.move_s) + 0.5 * simulation.hold_s;
+    const Eigen::Isometry3d T_lidar_board = world.T_lidar_board(time_s);
+    PointCloud sweep = world.Sweep(time_s);
+    if (spoilt.sweep) spoilt.sweep(T_lidar_board, &sweep);
+    const auto found = DetectLidarBoard(sweep, rig.board, rig.lidar_board_detector);
+    if (!found) continue;
+    BoardSample sample;
+    sample.id = stop + 1;
+    sample.lidar = found->front();
+    Eigen::Isometry3d T_camera_board = simulation.T_camera_lidar * T_lidar_board;
+    if (spoilt.T_seen_true) T_camera_board = T_camera_board * spoilt.T_seen_true(stop);
+    for (Eigen::Vector3d corner_board_m : rig.board.InnerCornersBoardM()) {
+      if (spoilt.corner) spoilt.corner(&corner_board_m);
+      sample.camera.corners_px.push_back(rig.camera.Project(T_camera_board * corner_board_m) +
+                                         kCornerNoisePx * random.NormalVector().head<2>());
+    }
+    samples.push_back(std::move(sample));
+  }
+  return samples;
 }
 
 }  // namespace voqcal

@@ -14,6 +14,7 @@
 #include "figures/figures.hpp"
 #include "figures/real_session.hpp"
 #include "figures/session_faults.hpp"
+#include "figures/simulated_session.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal {
@@ -58,32 +59,11 @@ class BaseSessions {
     return SamplesOf(drawn);
   }
 
-  // Sweeps through the detector; corners by projection, with noise: an image takes a second.
   std::vector<BoardSample> Simulated(int run) const {
-    constexpr double kCornerNoisePx = 0.1;
     SimulationOptions options = rig_.simulation;
     options.seed = args_.seed + static_cast<std::uint32_t>(run);
     options.num_poses = args_.num_poses;
-    const Simulation world(options, rig_.board, rig_.camera);
-    test::Random random(options.seed);
-    std::vector<BoardSample> samples;
-    for (int stop = 0; stop < options.num_poses; ++stop) {
-      const double time_s = stop * (options.hold_s + options.move_s) + 0.5 * options.hold_s;
-      const auto found =
-          DetectLidarBoard(world.Sweep(time_s), rig_.board, rig_.lidar_board_detector);
-      if (!found) continue;
-      BoardSample sample;
-      sample.id = stop + 1;
-      sample.lidar = found->front();
-      const Eigen::Isometry3d T_camera_board = options.T_camera_lidar * world.T_lidar_board(time_s);
-      for (const Eigen::Vector3d& corner_board_m : rig_.board.InnerCornersBoardM()) {
-        const Eigen::Vector3d corner_camera_m = T_camera_board * corner_board_m;
-        sample.camera.corners_px.push_back(rig_.camera.Project(corner_camera_m) +
-                                           kCornerNoisePx * random.NormalVector().head<2>());
-      }
-      samples.push_back(std::move(sample));
-    }
-    return samples;
+    return SimulateProjected(rig_, options, {});
   }
 
   VerdictArgs args_;

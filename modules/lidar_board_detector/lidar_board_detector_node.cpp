@@ -37,8 +37,8 @@ void LidarBoardDetectorNode::OnPoints(const pointcloud2_t& message) {
   std::string miss;
   std::int64_t accumulated_us = 0;
   std::vector<LidarBoard> candidates;
-  if (auto cloud = CloudOf(message, &miss)) {
-    LidarBoardSighting found = Detect(std::move(*cloud), message.utime);
+  if (const auto cloud = CloudOf(message, &miss)) {
+    LidarBoardSighting found = Detect(*cloud, message.utime);
     accumulated_us = found.accumulated_us;
     if (found.boards) {
       candidates = std::move(*found.boards);
@@ -56,10 +56,8 @@ void LidarBoardDetectorNode::OnPoints(const pointcloud2_t& message) {
                LidarBoardMessage(candidates, miss, message.utime, accumulated_us, seq_++));
 }
 
-LidarBoardSighting LidarBoardDetectorNode::Detect(PointCloud cloud, std::int64_t utime) {
-  if (!rig_.lidar_board_detector.background.is_used) {
-    return detector_.Detect(std::move(cloud), utime);
-  }
+LidarBoardSighting LidarBoardDetectorNode::Detect(const PointCloud& cloud, std::int64_t utime) {
+  if (!rig_.lidar_board_detector.background.is_used) return detector_.Detect(cloud, utime);
   LidarBoardSighting found = detector_.Detect(cloud, utime, &background_);
   background_.Learn(cloud);
   return found;

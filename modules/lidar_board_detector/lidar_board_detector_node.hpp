@@ -24,7 +24,7 @@ class LidarBoardDetectorNode : public Module {
 
  private:
   void OnPoints(const pointcloud2_t& message);
-  LidarBoardSighting Detect(PointCloud cloud, std::int64_t utime);
+  LidarBoardSighting Detect(const PointCloud& cloud, std::int64_t utime);
 
   Rig rig_;
   Bus& bus_;

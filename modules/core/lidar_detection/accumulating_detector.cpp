@@ -61,12 +61,13 @@ AccumulatingDetector::AccumulatingDetector(const BoardSpec& board, const LidarBo
   RequireUsable("AccumulatingDetector: options", options.Problems());
 }
 
-LidarBoardSighting AccumulatingDetector::Detect(PointCloud sweep_lidar_m,
+LidarBoardSighting AccumulatingDetector::Detect(const PointCloud& sweep_lidar_m,
                                                 std::int64_t utime,
                                                 const LidarBackground* background) {
   LidarBoardSighting best{DetectLidarBoard(sweep_lidar_m, board_, options_, background)};
-  Keep(std::move(sweep_lidar_m), utime);
-  if (best.boards || !LooksElsewhere()) return best;
+  Keep(sweep_lidar_m, utime);
+  if (!is_repeating_) TellWhetherRepeating();
+  if (best.boards || is_repeating_.value_or(true)) return best;
   const std::size_t num = sweeps_.size();
   for (std::size_t first = 0; num - first >= 2; first += (num - first + 1) / 2) {
     const std::int64_t accumulated_us = utime - sweeps_[first].utime;
@@ -80,35 +81,30 @@ LidarBoardSighting AccumulatingDetector::Detect(PointCloud sweep_lidar_m,
   return best;
 }
 
-void AccumulatingDetector::Keep(PointCloud sweep_lidar_m, std::int64_t utime) {
+void AccumulatingDetector::Keep(const PointCloud& sweep_lidar_m, std::int64_t utime) {
   if (options_.max_accumulation_s == 0.0 || is_repeating_.value_or(false)) return;
   if (!sweeps_.empty() && utime <= sweeps_.back().utime) sweeps_.clear();
-  sweeps_.push_back({utime, std::move(sweep_lidar_m), {}});
+  sweeps_.push_back({utime, sweep_lidar_m, CellsOf(sweep_lidar_m)});
   const auto max_us = std::llround(options_.max_accumulation_s * 1e6);
   while (utime - sweeps_.front().utime >= max_us) sweeps_.pop_front();
 }
 
-bool AccumulatingDetector::LooksElsewhere() {
+void AccumulatingDetector::TellWhetherRepeating() {
   constexpr std::size_t kTelling = 300;  // returns of a sweep
   constexpr double kMaxAgain = 0.6;      // of its directions, of a lidar that does not repeat them
-  for (Sweep& sweep : sweeps_) {
-    if (sweep.cells.empty()) sweep.cells = CellsOf(sweep.cloud_lidar_m);
-  }
-  if (is_repeating_ || sweeps_.size() < 2) return sweeps_.size() >= 2;
-  const auto& newest = sweeps_[sweeps_.size() - 1].cells;
+  if (sweeps_.size() < 2) return;
   TakenCells before;
   for (const std::uint32_t cell : sweeps_[sweeps_.size() - 2].cells) before.Take(cell);
   std::size_t num = 0;
   std::size_t num_again = 0;
-  for (const std::uint32_t cell : newest) {
+  for (const std::uint32_t cell : sweeps_.back().cells) {
     if (cell == kNoCell) continue;
     ++num;
     num_again += before.IsTaken(cell);
   }
-  if (num < kTelling) return false;
+  if (num < kTelling) return;
   is_repeating_ = static_cast<double>(num_again) > kMaxAgain * static_cast<double>(num);
   if (*is_repeating_) sweeps_.clear();
-  return !*is_repeating_;
 }
 
 PointCloud AccumulatingDetector::Accumulated(std::size_t first, std::size_t last) const {

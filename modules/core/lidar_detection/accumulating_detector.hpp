@@ -38,7 +38,7 @@ class AccumulatingDetector {
 
   /// @param utime  of the sweep, microseconds; one that is not after the last begins anew.
   /// @param background  as DetectLidarBoard takes it.
-  LidarBoardSighting Detect(PointCloud sweep_lidar_m,
+  LidarBoardSighting Detect(const PointCloud& sweep_lidar_m,
                             std::int64_t utime,
                             const LidarBackground* background = nullptr);
 
@@ -49,9 +49,9 @@ class AccumulatingDetector {
     std::vector<std::uint32_t> cells;  ///< In whose direction each point lies.
   };
 
-  void Keep(PointCloud sweep_lidar_m, std::int64_t utime);
-  /// Whether sweeps have been told to look elsewhere each time.
-  bool LooksElsewhere();
+  void Keep(const PointCloud& sweep_lidar_m, std::int64_t utime);
+  /// Tells by the two newest sweeps whether the lidar repeats its beams.
+  void TellWhetherRepeating();
   PointCloud Accumulated(std::size_t first, std::size_t last) const;
   /// Whether the older and the newer half of the sweeps from `first` on see it at the same place.
   bool Rests(const LidarBoard& found, std::size_t first) const;

@@ -24,7 +24,10 @@ std::optional<PointCloud> CloudOf(const pointcloud2_t& message, std::string* mis
 }  // namespace
 
 LidarBoardDetectorNode::LidarBoardDetectorNode(const Rig& rig, Bus* bus)
-    : rig_(rig), bus_(*bus), background_(rig.lidar_board_detector.background) {
+    : rig_(rig),
+      bus_(*bus),
+      detector_(rig.board, rig.lidar_board_detector),
+      background_(rig.lidar_board_detector.background) {
   bus_.Subscribe<pointcloud2_t>(rig_.channels.lidar_points,
                                 Queue::kEvery,
                                 [this](const pointcloud2_t& message) { OnPoints(message); });
@@ -32,29 +35,30 @@ LidarBoardDetectorNode::LidarBoardDetectorNode(const Rig& rig, Bus* bus)
 
 void LidarBoardDetectorNode::OnPoints(const pointcloud2_t& message) {
   std::string miss;
+  std::int64_t accumulated_us = 0;
   std::vector<LidarBoard> candidates;
   if (const auto cloud = CloudOf(message, &miss)) {
-    auto found = Detect(*cloud);
-    if (found) {
-      candidates = std::move(*found);
+    LidarBoardSighting found = Detect(*cloud, message.utime);
+    accumulated_us = found.accumulated_us;
+    if (found.boards) {
+      candidates = std::move(*found.boards);
       Count("boards");
+      if (accumulated_us > 0) Count("boards of several sweeps");
     } else {
-      miss = ToString(found.error());
-      candidates = found.error().unsure;
-      Count(ToString(found.error().miss));
+      miss = ToString(found.boards.error());
+      candidates = found.boards.error().unsure;
+      Count(ToString(found.boards.error().miss));
     }
   } else {
     Count(WithoutNumbers(miss));  // by kind: each cloud of a broken driver is broken another way
   }
   bus_.Publish(rig_.channels.lidar_board,
-               LidarBoardMessage(candidates, miss, message.utime, seq_++));
+               LidarBoardMessage(candidates, miss, message.utime, accumulated_us, seq_++));
 }
 
-Expected<std::vector<LidarBoard>, NoLidarBoard> LidarBoardDetectorNode::Detect(
-    const PointCloud& cloud) {
-  const LidarBoardOptions& options = rig_.lidar_board_detector;
-  if (!options.background.is_used) return DetectLidarBoard(cloud, rig_.board, options);
-  auto found = DetectLidarBoard(cloud, rig_.board, options, &background_);
+LidarBoardSighting LidarBoardDetectorNode::Detect(const PointCloud& cloud, std::int64_t utime) {
+  if (!rig_.lidar_board_detector.background.is_used) return detector_.Detect(cloud, utime);
+  LidarBoardSighting found = detector_.Detect(cloud, utime, &background_);
   background_.Learn(cloud);
   return found;
 }

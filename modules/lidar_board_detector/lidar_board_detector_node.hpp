@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/lidar_detection/lidar_board.hpp"
+#include "core/lidar_detection/accumulating_detector.hpp"
+#include "core/lidar_detection/lidar_background.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/rig.hpp"
@@ -23,10 +24,11 @@ class LidarBoardDetectorNode : public Module {
 
  private:
   void OnPoints(const pointcloud2_t& message);
-  Expected<std::vector<LidarBoard>, NoLidarBoard> Detect(const PointCloud& cloud);
+  LidarBoardSighting Detect(const PointCloud& cloud, std::int64_t utime);
 
   Rig rig_;
   Bus& bus_;
+  AccumulatingDetector detector_;
   LidarBackground background_;
   std::int64_t seq_ = 0;
 };

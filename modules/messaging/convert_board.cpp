@@ -138,9 +138,11 @@ CameraBoard FromMessage(const camera_board_t& message) {
 lidar_board_t LidarBoardMessage(const std::vector<LidarBoard>& candidates,
                                 const std::string& miss,
                                 std::int64_t utime,
+                                std::int64_t accumulated_us,
                                 std::int64_t seq) {
   lidar_board_t message{};
   message.utime = utime;
+  message.accumulated_us = accumulated_us;
   message.seq = seq;
   message.frame = "lidar";
   message.miss = miss;
@@ -165,6 +167,7 @@ camera_board_t CameraBoardMessage(const std::optional<CameraBoard>& board,
 LidarSighting SightingFromMessage(const lidar_board_t& message) {
   LidarSighting sighting;
   sighting.utime = message.utime;
+  sighting.accumulated_us = message.accumulated_us;
   sighting.miss = message.miss;
   for (const lidar_candidate_t& candidate : message.candidates) {
     if (!message.miss.empty()) {

@@ -34,9 +34,11 @@ CameraBoard FromMessage(const camera_board_t& message);
 /// What the lidar detector found in one sweep.
 /// @param candidates  best first; if there is no board, what may be it, but may be something else.
 /// @param miss        why there is none; empty if there is one.
+/// @param accumulated_us  how much older the oldest returns are that they are from.
 lidar_board_t LidarBoardMessage(const std::vector<LidarBoard>& candidates,
                                 const std::string& miss,
                                 std::int64_t utime,
+                                std::int64_t accumulated_us,
                                 std::int64_t seq);
 /// What the camera detector found in one image; no board needs a `miss`, and may have a `detail` of
 /// it.

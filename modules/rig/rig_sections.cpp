@@ -186,6 +186,7 @@ void ReadLidarBoardDetector(YamlSection* top, LidarBoardOptions* options) {
   section.Read("max_bend_m", &options->max_bend_m);
   section.Read("thickness_m", &options->thickness_m);
   section.Read("thickness_sigma_m", &options->thickness_sigma_m);
+  section.Read("max_accumulation_s", &options->max_accumulation_s);
   YamlSection beam = section.Section("beam");
   beam.Read("spill_m", &options->beam.spill_m);
   beam.Read("spill_sigma_m", &options->beam.spill_sigma_m);

@@ -156,7 +156,7 @@ void WriteMessages(const Corpora& corpora) {
   samples[0].runners_up.push_back(samples[1].lidar);
   WriteMessage(corpora, ToMessage(samples, 3, true, "hash"));
   WriteMessage(corpora, ToMessage(samples[0]));
-  WriteMessage(corpora, LidarBoardMessage({samples[0].lidar, samples[1].lidar}, "", 1, 2));
+  WriteMessage(corpora, LidarBoardMessage({samples[0].lidar, samples[1].lidar}, "", 1, 0, 2));
   WriteMessage(corpora, CameraBoardMessage(samples[0].camera, "", "", 1, 2));
   WriteMessage(corpora, ToMessage(test::TestCamera(), 1, 2));
   PointCloud cloud;

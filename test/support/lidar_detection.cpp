@@ -10,6 +10,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/geometry/rigid.hpp"
+#include "core/lidar_detection/accumulating_detector.hpp"
 #include "core/simulation/clutter.hpp"
 #include "core/simulation/keyed_noise.hpp"
 #include "core/simulation/simulation.hpp"
@@ -20,6 +21,7 @@ namespace {
 
 constexpr double kDeg = M_PI / 180.0;
 constexpr int kBoardsPerHall = 10;
+constexpr std::int64_t kSweepUs = 100000;
 constexpr double kMaxTiltDeg = 35.0;  // about each of two axes: 50 together
 constexpr double kClearanceM = 0.15;
 constexpr double kViewMarginRad = 0.3 * kDeg;  // a beam's width and a row's step
@@ -155,6 +157,7 @@ std::string LidarSighting::Line() const {
          << " deg, found at " << found.centre_m.transpose() << " m facing "
          << found.normal.transpose();
   }
+  if (num_frames > 1) text << " in " << num_frames << " sweeps";
   text << "; " << hits.num_points << " points, " << hits.num_rings << " rings; t_m "
        << T_lidar_board.translation().transpose() << " q_xyzw " << q.coeffs().transpose();
   return text.str();
@@ -204,6 +207,22 @@ std::optional<BoardPrior> PriorOf(const LidarDetectionOptions& options,
   return prior;
 }
 
+/// Of sweeps of a resting board, from the first to the last.
+LidarBoardSighting Sight(const LidarSimulator& lidar,
+                         const Eigen::Isometry3d& T_lidar_board,
+                         const LidarBoardOptions& options,
+                         const std::optional<BoardPrior>& prior,
+                         std::int64_t first_us,
+                         std::int64_t last_us) {
+  const auto sweep = [&](std::int64_t utime) { return lidar.Sweep(T_lidar_board, utime); };
+  if (prior) return {DetectLidarBoard(sweep(last_us), Board(), options, nullptr, prior)};
+  AccumulatingDetector detector(Board(), options);
+  for (std::int64_t utime = first_us; utime < last_us; utime += kSweepUs) {
+    detector.Detect(sweep(utime), utime);
+  }
+  return detector.Detect(sweep(last_us), last_us);
+}
+
 }  // namespace
 
 std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options,
@@ -211,6 +230,7 @@ std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options
   std::vector<LidarSighting> sightings;
   SimulationOptions simulation;
   simulation.scan.pattern = options.pattern;
+  if (options.dropout) simulation.dropout = *options.dropout;
   const bool is_touched = options.contact.has_value() || options.num_joined > 0;
   while (static_cast<int>(sightings.size()) < options.num_sweeps) {
     simulation.seed = options.seed + static_cast<std::uint32_t>(sightings.size()) / kBoardsPerHall;
@@ -220,7 +240,8 @@ std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options
     if (!is_touched) lidar.emplace(simulation, Board(), room);
     for (int board = 0; board < kBoardsPerHall; ++board) {
       if (static_cast<int>(sightings.size()) == options.num_sweeps) break;
-      const std::int64_t frame_us = std::int64_t{100000} * board;
+      const std::int64_t first_us = kSweepUs * board * options.num_frames;
+      const std::int64_t last_us = first_us + kSweepUs * (options.num_frames - 1);
       LidarSighting sighting;
       sighting.seed = simulation.seed;
       sighting.board = board;
@@ -230,14 +251,14 @@ std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options
         props.Append(PropsAt(options, sighting.T_lidar_board, simulation.seed, board));
         lidar.emplace(simulation, Board(), Room(Hall(), props));
       }
-      sighting.hits = lidar->CountBoardHits(sighting.T_lidar_board, frame_us);
+      sighting.hits = lidar->CountBoardHits(sighting.T_lidar_board, last_us);
       const auto prior = PriorOf(options, sighting.T_lidar_board, simulation.seed, board);
-      const auto found = DetectLidarBoard(
-          lidar->Sweep(sighting.T_lidar_board, frame_us), Board(), detector, nullptr, prior);
-      if (found) {
-        Judge(found->front(), &sighting);
+      const auto found = Sight(*lidar, sighting.T_lidar_board, detector, prior, first_us, last_us);
+      sighting.num_frames = static_cast<int>(found.accumulated_us / kSweepUs) + 1;
+      if (found.boards) {
+        Judge(found.boards->front(), &sighting);
       } else {
-        sighting.reason = ToString(found.error());
+        sighting.reason = ToString(found.boards.error());
       }
       sightings.push_back(sighting);
     }

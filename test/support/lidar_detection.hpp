@@ -22,6 +22,10 @@ struct LidarDetectionOptions {
   std::uint32_t seed = 1;  ///< Of the first hall; each further one has the next.
   double min_distance_m = 1.5;
   double max_distance_m = 8.0;
+  std::optional<double> dropout;  ///< Share of beams that return nothing, if not as simulated.
+  /// Sweeps of each resting board, 0.1 s apart; the verdict is on the last. More than one has no
+  /// prior.
+  int num_frames = 1;
   std::optional<BoardContact> contact;  ///< What touches every board.
   int num_joined = 0;  ///< Sides along which a leaf in the board's plane begins, as well.
   /// The board is expected: at the truth, off by as much as the prior says (1 sigma).
@@ -39,7 +43,8 @@ struct LidarSighting {
   std::uint32_t seed = 0;  ///< Of the hall.
   int board = 0;           ///< Which of the hall's boards.
   Eigen::Isometry3d T_lidar_board = Eigen::Isometry3d::Identity();
-  BoardHits hits;
+  BoardHits hits;      ///< Of the last sweep.
+  int num_frames = 1;  ///< That the verdict is from.
   SightingVerdict verdict = SightingVerdict::kMissed;
   std::string reason;          ///< Of a miss.
   int num_measured_sides = 0;  ///< Of what was taken for the board.

@@ -28,10 +28,10 @@ inline std::vector<SightingMessages> StillFrames(const std::vector<BoardSample>&
     const std::int64_t utime = sample.utime + i * 100'000;
     const std::int64_t seq = 4 * stop + i;
     if (i < 3) {
-      frames.push_back({LidarBoardMessage({sample.lidar}, "", utime, seq),
+      frames.push_back({LidarBoardMessage({sample.lidar}, "", utime, 0, seq),
                         CameraBoardMessage(sample.camera, "", "", utime, seq)});
     } else {
-      frames.push_back({LidarBoardMessage({}, "no plane", utime, seq),
+      frames.push_back({LidarBoardMessage({}, "no plane", utime, 0, seq),
                         CameraBoardMessage(std::nullopt, "no board", "", utime, seq)});
     }
   }

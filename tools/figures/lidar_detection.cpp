@@ -1,6 +1,7 @@
 // lidar-detection: how often the board is found, how often something else is taken for it, and how
 // well errors agree with their covariance; for each scan pattern, among clutter, by range; then
-// with each thing that may touch a board, and by the number of sides that were measured.
+// with each thing that may touch a board, by the number of sides that were measured, and of sweeps
+// that are put together.
 
 #include "support/lidar_detection.hpp"
 
@@ -33,6 +34,7 @@ struct Flags {
   std::uint32_t seed = 1;
   bool is_list = false;
   bool is_whole_only = false;
+  bool is_accumulated_only = false;
 };
 
 // Of some sightings.
@@ -171,7 +173,47 @@ void RunOpenSides(const Flags& flags) {
   for (std::size_t i = kNames.size(); i-- > 0;) PrintRow(kNames[i], by_sides[i]);
 }
 
+/// Boards that rest through ten sweeps of the rosette: as dense as it is simulated, and thinner.
+void RunAccumulated(const Flags& flags) {
+  constexpr std::array<double, 4> kRangesM = {3.0, 5.0, 7.0, 10.0};
+  constexpr std::array<int, 3> kNumPoints = {24000, 10000, 4000};
+  constexpr double kNumBeams = 24000;
+  std::cout << "\nboards that rest through ten sweeps, 0.1 s apart\n"
+            << std::left << std::setw(34) << "points a sweep, distance" << std::right
+            << std::setw(7) << "boards" << std::setw(10) << "from one" << std::setw(10)
+            << "from ten" << std::setw(8) << "wrong" << std::setw(18) << "NEES ctr  normal"
+            << std::setw(18) << "ctr mm  nrm deg" << '\n';
+  for (const int num_points : kNumPoints) {
+    for (std::size_t i = 0; i + 1 < kRangesM.size(); ++i) {
+      test::LidarDetectionOptions options = OptionsOf("rosette", flags);
+      options.min_distance_m = kRangesM[i];
+      options.max_distance_m = kRangesM[i + 1];
+      options.num_frames = 10;
+      options.dropout = 1.0 - num_points / kNumBeams;
+      Tally all;
+      Tally several;
+      int num_from_one = 0;
+      for (const LidarSighting& sighting : test::SightLidarBoards(options, {})) {
+        all.Add(sighting);
+        if (sighting.num_frames > 1) several.Add(sighting);
+        const bool is_right = sighting.verdict == SightingVerdict::kRight;
+        num_from_one += is_right && sighting.num_frames == 1;
+        if (flags.is_list && !is_right) std::cout << "    " << sighting.Line() << '\n';
+      }
+      std::ostringstream name;
+      name << num_points << ", " << kRangesM[i] << " to " << kRangesM[i + 1] << " m";
+      std::cout << std::left << std::setw(34) << name.str() << std::right << std::setw(7) << all.num
+                << std::setw(10) << num_from_one << std::setw(10) << all.centre_nees.size()
+                << std::setw(8) << all.num_wrong << std::fixed << std::setprecision(2)
+                << std::setw(9) << Mean(several.centre_nees) << std::setw(9)
+                << Mean(several.normal_nees) << std::setw(9) << Median(several.centre_error_mm)
+                << std::setw(9) << Median(several.normal_error_deg) << std::endl;
+    }
+  }
+}
+
 void Run(const Flags& flags) {
+  if (flags.is_accumulated_only) return RunAccumulated(flags);
   PrintHead(
       "boards of 0.61 x 0.85 m at 1.5 to 8 m among clutter and a board of another size\n"
       "enough: 6 rings or 150 points on the board; found: of these; wrong: of all sweeps");
@@ -180,6 +222,7 @@ void Run(const Flags& flags) {
   if (flags.is_whole_only) return;
   RunContacts(flags);
   RunOpenSides(flags);
+  RunAccumulated(flags);
 }
 
 }  // namespace
@@ -194,6 +237,8 @@ void AddLidarDetection(CLI::App* app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", flags->seed, "of the first hall; ten sweeps in each (default 1)");
   command->add_flag("--whole", flags->is_whole_only, "only boards that nothing touches");
+  command->add_flag(
+      "--accumulated", flags->is_accumulated_only, "only boards that rest through ten sweeps");
   command->add_flag("--list", flags->is_list, "list each miss and each wrong one");
   command->callback([flags] { Run(*flags); });
 }

@@ -192,6 +192,9 @@ std::vector<std::string> LidarBoardOptions::Problems() const {
   problems.RequirePositive("max_bend_m", max_bend_m);
   problems.Require(thickness_m >= 0, "thickness_m must not be negative", thickness_m);
   problems.RequirePositive("thickness_sigma_m", thickness_sigma_m);
+  problems.Require(max_accumulation_s >= 0 && max_accumulation_s <= 10,
+                   "max_accumulation_s must be from 0 to 10",
+                   max_accumulation_s);
   problems.Add(beam.Problems(), "beam: ");
   problems.Add(background.Problems(), "background: ");
   if (!region_of_interest) return problems.lines();

@@ -47,6 +47,9 @@ struct LidarBoardOptions {
   double max_bend_m = 0.02;          ///< A board that is certainly more bent is refused.
   double thickness_m = 0.01;  ///< Of the board: a plate has a few millimetres, foam 20 or so...
   double thickness_sigma_m = 0.01;  ///< ...and how little is known of it (1 sigma).
+  /// Where one sweep is too thin to tell, sweeps of so long are put together while the board rests;
+  /// 0: none.
+  double max_accumulation_s = 1.0;
   LidarBeamOptions beam;
   LidarBackgroundOptions background;
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "core/lidar_detection/detection_tolerances.hpp"
-#include "core/lidar_detection/outline_edges.hpp"
 
 namespace voqcal {
 namespace {
@@ -31,13 +31,14 @@ class SidePlaces {
 
   /// Nothing beyond the corners, where two sides meet.
   std::optional<Place> At(const Eigen::Vector2d& q_m, std::size_t side) const {
-    const Eigen::Vector2d outward = OutwardOf(side);
     const bool is_beside = side % 2 == 1;
+    const double across_m = is_beside ? q_m.x() : q_m.y();
+    const double outward_m = side == 1 || side == 2 ? across_m : -across_m;
     const double along = is_beside ? q_m.y() / half_m_.y() : q_m.x() / half_m_.x();
     if (std::abs(along) > 1.0) return {};
     const double share = (along + 1.0) / 2.0 * static_cast<double>(SideEvidence::kNumParts);
     const auto part = std::min(static_cast<std::size_t>(share), SideEvidence::kNumParts - 1);
-    return Place{side, part, outward.dot(q_m) - (is_beside ? half_m_.x() : half_m_.y())};
+    return Place{side, part, outward_m - (is_beside ? half_m_.x() : half_m_.y())};
   }
 
  private:
@@ -166,6 +167,10 @@ std::vector<OutlineBeam> TellingBeams(const std::vector<OutlineBeam>& beams,
     const Past past = sides[side].past[part];
     return past == Past::kPlane || past == Past::kTouch;
   };
+  const bool is_alone = std::all_of(sides.begin(), sides.end(), [](const SideEvidence& side) {
+    return side.Count(Past::kPlane) + side.Count(Past::kTouch) == 0;
+  });
+  if (is_alone) return beams;
   // What joins a side may reach into the rectangle, unless the side opposite tells where this one
   // is.
   std::array<double, 4> margin_m{};

@@ -173,6 +173,7 @@ std::vector<PickerDecision> SamplePicker::RestartIfBack(std::int64_t utime, std:
   std::vector<PickerDecision> decisions = Judge(true);
   window_.clear();
   followed_.clear();
+  rest_begin_.reset();
   newest_lidar_utime_ = newest_camera_utime_ = std::numeric_limits<std::int64_t>::min();
   return decisions;
 }
@@ -264,6 +265,7 @@ PickerDecision SamplePicker::JudgePair(Pair pair) {
     return {pair.lidar.utime, std::move(sample), {}};
   }
 
+  if (!HasRestedThrough(pair.lidar)) return reject("not yet still for long enough");
   const std::string motion = Motion(pair);
   if (!motion.empty()) window_.clear();
   window_.push_back(pair);
@@ -285,18 +287,25 @@ PickerDecision SamplePicker::TakeStop(const UnsureStop& stop) {
 }
 
 void SamplePicker::FollowCamera(const Pair& pair) {
-  const auto has_moved = [this, &pair](const Pair& earlier) {
-    return LargestCornerMotionPx(*pair.camera.board, *earlier.camera.board) >
-           options_.max_still_motion_px;
+  const auto has_moved_since = [this, &pair](const CameraSighting& earlier) {
+    return LargestCornerMotionPx(*pair.camera.board, *earlier.board) > options_.max_still_motion_px;
   };
-  if (!pair.camera.board || std::any_of(followed_.begin(), followed_.end(), has_moved)) {
-    followed_.clear();
-  }
+  const bool has_moved = !pair.camera.board ||
+                         std::any_of(followed_.begin(), followed_.end(), [&](const Pair& earlier) {
+                           return has_moved_since(earlier.camera);
+                         });
+  if (has_moved) followed_.clear();
+  if (has_moved || (rest_begin_ && has_moved_since(*rest_begin_))) rest_begin_.reset();
   if (!pair.camera.board) return;
+  if (!rest_begin_) rest_begin_ = pair.camera;
   followed_.push_back(pair);
   if (static_cast<int>(followed_.size()) > options_.num_still_frames) {
     followed_.erase(followed_.begin());
   }
+}
+
+bool SamplePicker::HasRestedThrough(const LidarSighting& lidar) const {
+  return lidar.utime - lidar.accumulated_us + max_pair_offset_us_ >= rest_begin_->utime;
 }
 
 // What the newest frame ranks first must have been there before, whatever its rank was then.

@@ -37,6 +37,8 @@ struct Sighting {
   std::vector<Board> runners_up{};  ///< Others that might be the board, best first (lidar only).
   /// Where there is no board: what may be it, but may be something else (lidar only).
   std::vector<Board> unsure{};
+  /// How long before utime the oldest sweep is that the board is from (lidar only).
+  std::int64_t accumulated_us = 0;
 };
 using LidarSighting = Sighting<LidarBoard>;
 using CameraSighting = Sighting<CameraBoard>;
@@ -109,13 +111,15 @@ class SamplePicker {
   PickerDecision JudgeWindow(const std::vector<Pair>& window);
   /// What the lidar saw resting through all frames of a window: the likeliest, then the others.
   std::vector<LidarBoard> RestingCandidates(const std::vector<Pair>& window) const;
-  /// Keeps `followed_` up.
+  /// Keeps `followed_` and `rest_begin_` up.
   void FollowCamera(const Pair& pair);
   /// What is followed, if it is whole and its pose is new.
   std::optional<UnsureStop> FollowedStop();
   BoardSample MakeSample(std::vector<LidarBoard> candidates,
                          const std::vector<CameraBoard>& camera,
                          std::int64_t utime) const;
+  /// Whether the camera's board has been at rest since the oldest sweep that the lidar's is from.
+  bool HasRestedThrough(const LidarSighting& lidar) const;
   /// Why the window's boards are not at rest; empty if they are.
   std::string Motion(const Pair& pair) const;
   bool IsNew(const BoardPose& pose_camera) const;
@@ -131,6 +135,7 @@ class SamplePicker {
   std::int64_t newest_camera_utime_;
   std::vector<Pair> window_;    // the latest consecutive pairs with a resting board
   std::vector<Pair> followed_;  // those in which the camera's board rests, whatever the lidar saw
+  std::optional<CameraSighting> rest_begin_;  // the first that the camera's board rests since
   std::vector<Eigen::Isometry3d> known_T_camera_board_;
   std::vector<Eigen::Isometry3d> unsure_T_camera_board_;  // of the unsure stops so far
 };

@@ -1,5 +1,6 @@
 #include "core/sampling/sample_picker.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -78,6 +79,25 @@ TEST(SamplePicker, AcceptsAStillBoardOnce) {
   EXPECT_EQ(decisions[2].accepted->utime, 0);
   // What all frames share does not average out: three frames claim no more than one.
   EXPECT_NEAR(decisions[2].accepted->lidar.pose.covariance(0, 0), 1.0, 1e-12);
+}
+
+TEST(SamplePicker, TakesNoBoardOfSweepsFromBeforeItCameToRest) {
+  SamplePicker picker(Board(), {});
+  std::vector<PickerDecision> decisions;
+  // It comes to rest with the fourth frame; the lidar puts up to five sweeps together.
+  for (int frame = 0; frame < 10; ++frame) {
+    LidarSighting lidar = Lidar(frame, 0.5);
+    lidar.accumulated_us = std::min(frame, 4) * kFrameUs;
+    Append(picker.Add(lidar), &decisions);
+    Append(picker.Add(Camera(frame, frame < 3 ? 0.35 + 0.05 * frame : 0.5)), &decisions);
+  }
+  Append(picker.Flush(), &decisions);
+  const std::vector<std::string> outcomes = Outcomes(decisions);
+  // Of the still frames the first is the eighth, whose sweeps begin with the fourth.
+  const auto accepted = std::find(outcomes.begin(), outcomes.end(), "accepted");
+  ASSERT_NE(accepted, outcomes.end());
+  EXPECT_EQ(accepted - outcomes.begin(), 9);
+  EXPECT_EQ(decisions[9].accepted->utime, 7 * kFrameUs);
 }
 
 const Eigen::Vector2d kUnseenPx = Eigen::Vector2d::Constant(std::nan(""));

@@ -156,8 +156,9 @@ TEST(LidarBoardMessage, GivesTheCandidatesInTheirOrder) {
   Numbers numbers;
   const std::vector<LidarBoard> candidates = {Lidar(&numbers), Lidar(&numbers)};
   const LidarSighting sighting =
-      SightingFromMessage(OverTheWire(LidarBoardMessage(candidates, "", 12, 3)));
+      SightingFromMessage(OverTheWire(LidarBoardMessage(candidates, "", 12, 300, 3)));
   EXPECT_EQ(sighting.utime, 12);
+  EXPECT_EQ(sighting.accumulated_us, 300);
   ASSERT_TRUE(sighting.board);
   ExpectSame(*sighting.board, candidates[0]);
   ASSERT_EQ(sighting.runners_up.size(), 1U);
@@ -166,7 +167,7 @@ TEST(LidarBoardMessage, GivesTheCandidatesInTheirOrder) {
 
 TEST(LidarBoardMessage, GivesTheReasonForNone) {
   const LidarSighting sighting =
-      SightingFromMessage(OverTheWire(LidarBoardMessage({}, "no plane", 12, 3)));
+      SightingFromMessage(OverTheWire(LidarBoardMessage({}, "no plane", 12, 0, 3)));
   EXPECT_FALSE(sighting.board);
   EXPECT_EQ(sighting.miss, "no plane");
 }

@@ -144,6 +144,20 @@ TEST_F(RigHealthTest, ASensorThatNeverSentIsAFaultOnceItsDriverHasStarted) {
   EXPECT_THAT(Faults(), ElementsAre(Field(&Fault::what, "The lidar has sent nothing yet")));
 }
 
+// Who looks at a session only now knows what its readers have counted.
+TEST_F(RigHealthTest, ASensorThatFellSilentBeforeOneLookedIsNotCalledNew) {
+  Beat(6);
+  is_lidar_sending_ = false;
+  Beat(6);
+  RigHealth late{Channels{}, {}, At(now_s_)};
+  module_status_t status = Status("sample_collector");
+  status.channels[0].rate_hz = 0;
+  late.Take(status, At(now_s_));
+  late.Take(Status("lidar_driver"), At(now_s_));
+  EXPECT_THAT(late.Faults(At(now_s_)),
+              ::testing::Contains(Field(&Fault::what, "The lidar has sent nothing lately")));
+}
+
 TEST_F(RigHealthTest, ATroubleIsToldInItsModulesWords) {
   collector_state_ = "trouble: The camera's clock is 3600 s ahead; set both by one clock";
   Beat(6);
@@ -169,6 +183,29 @@ TEST_F(RigHealthTest, ASecondSessionIsAFault) {
   health_.Take(other, At(now_s_));
   EXPECT_THAT(Faults(),
               ElementsAre(Field(&Fault::cause, HasSubstr("host:/other and of host:/session"))));
+}
+
+TEST_F(RigHealthTest, ASessionThatIsAboutToStartIsARivalAndNoModule) {
+  Beat(6);
+  module_status_t other = Status("assessor");
+  other.session = "host:/other";
+  other.state = kToBeStarted;
+  health_.Take(other, At(now_s_));
+  EXPECT_THAT(health_.heartbeats().Rivals(At(now_s_), "host:/session"),
+              ElementsAre("assessor of host:/other is about to be started on this network"));
+  EXPECT_THAT(health_.heartbeats().Rivals(At(now_s_ + 4), "host:/session"), IsEmpty());
+  Beat();
+  EXPECT_THAT(Faults(), IsEmpty());
+}
+
+// Only sensors come to an end.
+TEST_F(RigHealthTest, AReaderThatWasStoppedIsAFault) {
+  Beat(6);
+  silent_ = "assessor";
+  module_status_t status = Status("assessor");
+  status.state = "stopped";
+  health_.Take(status, At(now_s_));
+  EXPECT_THAT(Faults(), ElementsAre(Field(&Fault::cause, "assessor was stopped")));
 }
 
 TEST_F(RigHealthTest, LossesAreToldAndAreNoReasonToStop) {

@@ -199,6 +199,20 @@ TEST_F(Supervision, PageStatusAndExitStatusTellWhatFails) {
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
 }
 
+TEST_F(Supervision, ThePagesAddressIsAQrCodeForAPhone) {
+  const auto tell = [this](const std::string& addresses) {
+    const std::string file = folder_.Write("dashboard_url.txt", addresses);
+    return test::Run({"bash", test::Tool("common/tell_page.sh"), file}).out;
+  };
+  EXPECT_THAT(tell("http://127.0.0.1:8765/token/\n"),
+              AllOf(HasSubstr("the page: http://127.0.0.1:8765/token/\n"),
+                    HasSubstr("no QR code: this host alone reaches it")));
+  const std::string both = tell("http://192.0.2.7:8765/token/\nhttp://198.51.100.7:8765/token/\n");
+  EXPECT_THAT(both, HasSubstr("or: http://198.51.100.7:8765/token/\n"));
+  const bool has_qrencode = test::Run({"sh", "-c", "command -v qrencode"}).status == 0;
+  EXPECT_THAT(both, HasSubstr(has_qrencode ? "\u2588\u2588" : "qrencode is not installed"));
+}
+
 // The full number of 50 kills: test/system/kill_test.py by hand.
 TEST_F(Supervision, KilledModulesChangeNothingInTheEnd) {
   const test::Outcome outcome =

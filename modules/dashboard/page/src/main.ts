@@ -114,6 +114,7 @@ function take(message: Message): void {
       document.title = `${message.name}: calibration`;
       setText("rig", message.name);
       coverage.showRig(message);
+      scene?.showRig(message);
       break;
     case "samples":
       showSamples(message, (id) => actions.send({ command: "discard", sample_id: id }));
@@ -123,6 +124,7 @@ function take(message: Message): void {
       break;
     case "result":
       showResult(message);
+      scene?.showResult(message);
       break;
     case "guidance":
       guidance = message;
@@ -145,5 +147,7 @@ function take(message: Message): void {
 }
 
 setInterval(showHealth, 500);
+const isColoured = byId<HTMLInputElement>("is-coloured");
+scene?.colourBy((cloud, point) => (isColoured.checked ? image.colourOf(cloud, point) : null));
 byId("look-along").addEventListener("click", () => scene?.lookAlong());
 connection.open();

@@ -193,7 +193,7 @@ TEST_F(Supervision, PageStatusAndExitStatusTellWhatFails) {
                  "--rig",
                  rig_,
                  "--tries",
-                 "3",
+                 "2",
                  "--out",
                  folder_.path() / "faults"});
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;

@@ -116,7 +116,8 @@ void Heartbeats::NoteLosses(const module_status_t& status, const HeardModule* be
     for (const channel_status_t& channel : of.channels) num_lost += channel.num_lost;
     return num_lost;
   };
-  if (sum(status) > (before == nullptr ? 0 : sum(before->status))) last_loss_ = now;
+  // What the first heartbeat counts may have been lost long ago.
+  if (before != nullptr && sum(status) > sum(before->status)) last_loss_ = now;
 }
 
 std::vector<std::string> Heartbeats::Rivals(Time now, const std::string& own) const {

@@ -303,6 +303,9 @@ def restore(session, name, how):
         session.signal(name, signal.SIGCONT)
     elif how == "stopped":
         session.supervisorctl("start", name)
+    if name.endswith("_driver"):
+        # One simulated sensor that is started again begins its time anew, and the clocks differ: both do.
+        session.supervisorctl("restart", "lidar_driver", "camera_driver")
 
 
 def try_fault(session, name, how):

@@ -218,6 +218,12 @@ TEST_F(RigHealthTest, LossesAreToldAndAreNoReasonToStop) {
   EXPECT_THAT(Faults(), ElementsAre(Field(&Fault::what, "Messages were lost")));
 }
 
+TEST_F(RigHealthTest, LossesFromBeforeOneLookedAreNotBeingLostNow) {
+  num_lost_ = 5;
+  Beat();
+  EXPECT_THAT(Faults(), ElementsAre(Field(&Fault::what, "Messages were lost")));
+}
+
 /// What the host knows while all runs.
 SessionFacts Running() {
   SessionFacts facts;

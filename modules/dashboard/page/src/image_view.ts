@@ -1,10 +1,8 @@
 // The live image with what was found in it.
 
 import { rangePixel } from "./colours.ts";
-import { NOT_SEEN, type CameraBoard, type CloudFrame, type Guidance, type ImageFrame } from "./protocol.ts";
+import { NOT_SEEN, type CloudFrame, type Guidance, type ImageFrame } from "./protocol.ts";
 
-/** Corners are drawn on images that are at most so much older or newer. */
-const MAX_OFFSET_US = 300_000;
 /** Points take the colours of images that are at most so much older or newer: only what moves is then beside it. */
 const MAX_COLOUR_OFFSET_US = 2_000_000;
 
@@ -12,7 +10,6 @@ export class ImageView {
   private bitmap: ImageBitmap | null = null;
   private frame: ImageFrame | null = null;
   private cloud: CloudFrame | null = null;
-  private board: CameraBoard | null = null;
   private guidance: Guidance | null = null;
   private drawnCloud: CloudFrame | null = null;
   private pixels: { of: ImageBitmap; data: ImageData } | null = null;
@@ -39,15 +36,6 @@ export class ImageView {
   // These show with the next image.
   showCloud(cloud: CloudFrame): void {
     this.cloud = cloud;
-  }
-
-  showBoard(board: CameraBoard): void {
-    this.board = board;
-  }
-
-  /** Of frames that no longer come. */
-  forgetBoard(): void {
-    this.board = null;
   }
 
   /** The image's colour (0 to 1) at a point of a sweep; null where it does not show it. */
@@ -111,8 +99,9 @@ export class ImageView {
   }
 
   private drawBoard(scale: number): void {
-    const { board, frame, context } = this;
-    if (!board || board.miss || Math.abs(board.utime - frame!.utime) > MAX_OFFSET_US) return;
+    const { context } = this;
+    const board = this.frame!.board;
+    if (!board || board.miss) return;
     if (board.outline_px) this.drawPolygon(board.outline_px, scale, "#31d158", []);
     context.fillStyle = "#31d158";
     context.strokeStyle = "#003b12";

@@ -133,6 +133,8 @@ export interface ImageFrame {
   utime: number;
   width: number;
   height: number;
+  /** What was found in this very image; null: not known. */
+  board: CameraBoard | null;
   data: Blob;
 }
 

@@ -1,6 +1,7 @@
 #include "sample_collector/sample_collector_node.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "messaging/session_misses.hpp"
 #include "voqcal/event_t.hpp"
 #include "voqcal/image_t.hpp"
+#include "voqcal/module_status_t.hpp"
 #include "voqcal/pointcloud2_t.hpp"
 #include "voqcal/samples_t.hpp"
 
@@ -52,6 +54,7 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
       picker_(rig.board, rig.sample_collector),
       sweeps_(kMaxBufferBytes),
       images_(kMaxBufferBytes),
+      heartbeats_(rig.channels),
       second_look_(rig),
       next_look_(kFirstLook),
       session_(session_folder),
@@ -73,6 +76,10 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
   bus_.Subscribe<camera_board_t>(
       channels_.camera_board, Queue::kEvery, [this](const camera_board_t& m) {
         OnBoard(m, &newest_camera_utime_);
+      });
+  bus_.Subscribe<module_status_t>(
+      channels_.module_status, Queue::kEvery, [this](const module_status_t& m) {
+        heartbeats_.Take(m, std::chrono::steady_clock::now());
       });
   bus_.Subscribe<command_t>(channels_.calib_command,
                             Queue::kEvery,
@@ -138,6 +145,10 @@ void SampleCollectorNode::RequestFinish() {
   if (is_finish_requested_) return;
   is_finish_requested_ = true;
   finish_utime_ = std::max(sweeps_.NewestUtime(), images_.NewestUtime());
+}
+
+bool SampleCollectorNode::IsNetworkShared() const {
+  return !heartbeats_.Rivals(std::chrono::steady_clock::now()).empty();
 }
 
 bool SampleCollectorNode::IsTooLate(std::int64_t utime) const {
@@ -228,6 +239,7 @@ void SampleCollectorNode::OnBoard(const BoardMessage& message, std::int64_t* new
   has_new_frames_ = true;
   *newest_utime = message.utime;
   if (IsTooLate(message.utime)) return;
+  if (IsNetworkShared()) return Count("frames while two sessions ran on one network");
   if (!message.miss.empty()) NoteMiss(message);
   decltype(SightingFromMessage(message)) sighting;
   try {

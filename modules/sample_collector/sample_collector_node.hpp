@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/sampling/sample_picker.hpp"
+#include "health/heartbeats.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/rig.hpp"
@@ -52,6 +53,8 @@ class SampleCollectorNode : public Module {
   static void Keep(const Message& message, FrameBuffer* frames);
   template <typename BoardMessage>
   void OnBoard(const BoardMessage& message, std::int64_t* newest_utime);
+  /// Another session's detectors may say what this one's cannot be told from.
+  bool IsNetworkShared() const;
   void NoteMiss(const lidar_board_t& message);
   void NoteMiss(const camera_board_t& message);
   /// Where there are too few samples for a result, what was seen instead.
@@ -91,6 +94,7 @@ class SampleCollectorNode : public Module {
   FrameBuffer sweeps_;
   FrameBuffer images_;
   ClockWatch clocks_;
+  Heartbeats heartbeats_;
   MissExamples misses_;
   SecondLook second_look_;
   std::size_t next_look_;  // at so many samples and kept stops

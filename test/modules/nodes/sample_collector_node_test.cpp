@@ -341,6 +341,22 @@ TEST_F(SampleCollectorNodeTest, KeepsFramesWithoutABoardWhereFinishLeavesTooFewS
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / kMissesLogName));
 }
 
+// Nobody can tell whose boards they are.
+TEST_F(SampleCollectorNodeTest, TakesNothingWhileTwoSessionsRunOnOneNetwork) {
+  module_status_t status{};
+  status.module = "camera_board_detector";
+  status.state = "running";
+  status.session = "host:/one";
+  test::Send(bus_.get(), rig_.channels.module_status, status);
+  ShowStop(0);
+  EXPECT_THAT(Ids(), ElementsAre(1));
+  status.session = "host:/another";
+  test::Send(bus_.get(), rig_.channels.module_status, status);
+  ShowStop(1);
+  EXPECT_THAT(Ids(), ElementsAre(1));
+  EXPECT_EQ(node_->counters().at("frames while two sessions ran on one network"), 8);
+}
+
 TEST_F(SampleCollectorNodeTest, OrderOfArrivalDoesNotMatter) {
   for (int stop = 0; stop < 4; ++stop) ShowStop(stop);
   node_->Finish();

@@ -122,7 +122,14 @@ bool RigHealth::HasEndedWell(const std::string& module) const {
   const HeardModule* heard = heartbeats_.Find(module);
   if (heard != nullptr) return heard->HasEnded();
   const ProgramFacts* program = ProgramOf(module);
-  return program != nullptr && program->history.has_ended_well;
+  return program != nullptr && (program->history.has_ended_well || program->history.was_stopped);
+}
+
+std::string RigHealth::HowEnded(const std::string& module) const {
+  const HeardModule* heard = heartbeats_.Find(module);
+  if (heard != nullptr) return heard->status.state;
+  const ProgramFacts* program = ProgramOf(module);
+  return program != nullptr && program->history.was_stopped ? "stopped" : "done";
 }
 
 const ProgramFacts* RigHealth::ProgramOf(const std::string& name) const {

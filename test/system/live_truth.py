@@ -352,7 +352,7 @@ def faults(args, folder):
     session = Session(rig, folder / "session")
     session.up()
     rng = random.Random(args.seed)
-    names = [*MODULES, RECORDER, SUPERVISOR]
+    names = args.of or [*MODULES, RECORDER, SUPERVISOR]
     order, num_good, known_s = [], 0, []
     try:
         if wait_until(lambda: is_well(session.page.health())) is None:
@@ -383,6 +383,7 @@ def main():
     parser.add_argument("--rig", type=pathlib.Path, default=ROOT / "config/rigs/simulated_vlp16.yaml",
                         help="a simulated one")
     parser.add_argument("--poses", type=int, default=8, help="stops of the board in a session")
+    parser.add_argument("--of", action="append", choices=[*MODULES, RECORDER, SUPERVISOR], help="faults of just this")
     parser.add_argument("--out", type=pathlib.Path, help="keeps the sessions there; made anew")
     args = parser.parse_args()
     if "VOQCAL_ISOLATED" not in os.environ and "VOQCAL_TEST_IS_ISOLATED" not in os.environ:

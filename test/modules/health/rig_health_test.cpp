@@ -304,6 +304,20 @@ TEST_F(RigHealthTest, DriversThatEndedAsPlannedAreNoFault) {
   EXPECT_EQ(health_.FlowOf("LIDAR_POINTS", At(now_s_ + 2.9)), Flow::kEnded);
 }
 
+// Also where only the supervisor's log tells so, to who did not hear its last heartbeat.
+TEST_F(RigHealthTest, ADriverThatWasStoppedHasEndedForWhoHeardItAndForWhoDidNot) {
+  is_camera_sending_ = false;
+  silent_ = "camera_driver";
+  Beat(6);
+  SessionFacts facts = Running();
+  facts.programs["camera_driver"].history.is_running = false;
+  facts.programs["camera_driver"].history.was_stopped = true;
+  health_.Take(facts, At(now_s_));
+  EXPECT_THAT(Faults(), IsEmpty());
+  EXPECT_EQ(health_.FlowOf("CAMERA_IMAGE", At(now_s_)), Flow::kEnded);
+  EXPECT_EQ(health_.HowEnded("camera_driver"), "stopped");
+}
+
 TEST(FaultText, IsOneLine) {
   EXPECT_THAT(ToString(Fault{"disk", "The disk is full", "", "Make room."}),
               StartsWith("The disk is full. Make room."));

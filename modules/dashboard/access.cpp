@@ -80,8 +80,8 @@ std::string TokenOfSession(const std::filesystem::path& address_file) {
   return IsToken(token) ? token : NewToken();
 }
 
-void SaveAddress(const std::filesystem::path& address_file, const std::string& address) {
-  WriteFileAtomically(address_file, address + "\n", FileReaders::kOwnerOnly);
+void SaveAddresses(const std::filesystem::path& address_file, const std::string& lines) {
+  WriteFileAtomically(address_file, lines + "\n", FileReaders::kOwnerOnly);
 }
 
 bool IsSameSecret(std::string_view a, std::string_view b) {

@@ -10,14 +10,14 @@ namespace voqcal {
 /// @throws std::runtime_error if there is no such source.
 std::string NewToken();
 
-/// The token of the address that this file holds (SaveAddress), so that a page that is open goes on
-/// when the dashboard was started again; a new one if there is no such file, or if others than its
-/// owner may read it.
+/// The token of the addresses that this file holds (SaveAddresses), so that a page that is open
+/// goes on when the dashboard was started again; a new one if there is no such file, or if others
+/// than its owner may read it.
 std::string TokenOfSession(const std::filesystem::path& address_file);
 
-/// Writes the address, one line, whole or not at all, for its owner's eyes only (mode 0600).
+/// Writes the addresses, a line each, whole or not at all, for their owner's eyes only (mode 0600).
 /// @throws std::runtime_error naming the file and the cause.
-void SaveAddress(const std::filesystem::path& address_file, const std::string& address);
+void SaveAddresses(const std::filesystem::path& address_file, const std::string& lines);
 
 /// Equality that takes as long for a good guess as for a bad one.
 bool IsSameSecret(std::string_view a, std::string_view b);

@@ -21,6 +21,10 @@ namespace {
 constexpr std::size_t kMaxEvents = 40;
 constexpr std::chrono::milliseconds kStepPeriod{50};  // a click must not seem to hang
 constexpr std::chrono::milliseconds kHealthPeriod{500};
+// An image is shown with the board that was found in it, or without if that takes longer.
+constexpr std::chrono::milliseconds kBoardPatience{500};
+constexpr std::chrono::seconds kBoardsCome{2};
+constexpr std::size_t kMaxBoards = 20;
 
 /// With no page open a frame a second is kept ready for the next.
 std::chrono::steady_clock::duration Period(double rate_hz, bool has_pages) {
@@ -99,6 +103,7 @@ bool DashboardNode::Step() {
   next_step_ = Clock::now() + kStepPeriod;
   TakeCommands();
   ShowHealthIfDue();
+  ShowImageIfItsBoardIsLate();
   if (!std::exchange(is_state_new_, false)) return false;
   Try([this] { ShowSamples(); });
   Try([this] { ShowResult(); });
@@ -126,8 +131,25 @@ void DashboardNode::OnImage(const image_t& message) {
   StepIfDue();
   const Clock::time_point now = Clock::now();
   if (now < next_image_) return;
+  ShowImageIfItsBoardIsLate();
+  if (waiting_image_) return;
   next_image_ = now + Period(rig_.dashboard.image_rate_hz, server_.num_pages() > 0);
-  Try([&] { server_.Show(Slot::kImage, ImageFrame(message, rig_.dashboard)); });
+  Try([&] {
+    waiting_image_ = ForPage(message, rig_.dashboard);
+    waiting_since_ = now;
+    const auto board = boards_.find(message.utime);
+    if (board != boards_.end()) return ShowImage(board->second);
+    if (now - last_board_at_ > kBoardsCome) ShowImage("");  // no detector is at work
+  });
+}
+
+void DashboardNode::ShowImage(const std::string& board_json) {
+  server_.Show(Slot::kImage, ImageFrame(*waiting_image_, board_json));
+  waiting_image_.reset();
+}
+
+void DashboardNode::ShowImageIfItsBoardIsLate() {
+  if (waiting_image_ && Clock::now() - waiting_since_ > kBoardPatience) ShowImage("");
 }
 
 void DashboardNode::OnPoints(const pointcloud2_t& message) {
@@ -144,7 +166,16 @@ void DashboardNode::OnPoints(const pointcloud2_t& message) {
 
 void DashboardNode::OnCameraBoard(const camera_board_t& message) {
   board_camera_.reset();
-  Show(Slot::kCameraBoard, CameraBoardJson(message, rig_.camera));
+  const std::string json = CameraBoardJson(message, rig_.camera);
+  Show(Slot::kCameraBoard, json);
+  const bool is_time_set_back = !boards_.empty() && message.utime < boards_.begin()->first;
+  if (is_time_set_back) boards_.clear();
+  boards_[message.utime] = json;
+  if (boards_.size() > kMaxBoards) boards_.erase(boards_.begin());
+  last_board_at_ = Clock::now();
+  if (waiting_image_ && message.utime >= waiting_image_->utime) {
+    ShowImage(message.utime == waiting_image_->utime ? json : "");
+  }
   if (message.miss.empty()) board_camera_ = FromMessage(message).pose;
   ShowGuidance();
 }

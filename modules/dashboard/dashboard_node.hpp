@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "dashboard/page_state.hpp"
+#include "dashboard/sensor_frames.hpp"
 #include "dashboard/server.hpp"
 #include "health/rig_health.hpp"
 #include "messaging/bus.hpp"
@@ -46,6 +48,8 @@ class DashboardNode : public Module {
   void StepIfDue();
   void TakeCommands();
   void OnImage(const image_t& message);
+  void ShowImage(const std::string& board_json);  ///< That which waits; empty: without a board.
+  void ShowImageIfItsBoardIsLate();
   void OnPoints(const pointcloud2_t& message);
   void OnCameraBoard(const camera_board_t& message);
   /// The order changes with the board that is moved.
@@ -82,8 +86,12 @@ class DashboardNode : public Module {
   Clock::time_point next_cloud_;
   Clock::time_point next_health_;
   RigHealth health_;
-  std::deque<CountedEvent> events_;  ///< The newest first; rejects of one cause together.
-  bool is_state_new_ = false;        ///< Samples or what is made of them changed.
+  std::deque<CountedEvent> events_;         ///< The newest first; rejects of one cause together.
+  bool is_state_new_ = false;               ///< Samples or what is made of them changed.
+  std::optional<PageImage> waiting_image_;  ///< For the board that is found in it.
+  Clock::time_point waiting_since_;
+  std::map<std::int64_t, std::string> boards_;  ///< The newest, as JSON, by their images' times.
+  Clock::time_point last_board_at_;
   std::optional<next_pose_t> next_pose_;
   std::optional<BoardPose> board_camera_;  ///< Where the camera sees it, in the newest image.
   std::optional<samples_t> samples_;

@@ -1,7 +1,13 @@
+#include <algorithm>
+#include <cstring>
 #include <string>
+#include <vector>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/udp.hpp>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -32,20 +38,43 @@ ip::address OutwardAddress(const ip::address& any) {
                : socket.local_endpoint().address();
 }
 
-std::string PageAddress(const DashboardOptions& options,
-                        const DashboardServer& server,
-                        const std::string& token) {
-  ip::address address = ip::make_address(options.address);
-  if (address.is_unspecified()) address = OutwardAddress(address);
-  const std::string host = address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
-  return "http://" + host + ":" + std::to_string(server.port()) + "/" + token + "/";
+/// Where this host can be reached, for a server that listens at `address`: the likeliest first.
+std::vector<ip::address> ReachableAt(const ip::address& address) {
+  if (!address.is_unspecified()) return {address};
+  std::vector<ip::address> all = {OutwardAddress(address)};
+  ifaddrs* found = nullptr;
+  if (getifaddrs(&found) != 0) return all;
+  for (const ifaddrs* each = found; each != nullptr; each = each->ifa_next) {
+    const bool is_up = (each->ifa_flags & IFF_UP) != 0 && (each->ifa_flags & IFF_LOOPBACK) == 0;
+    if (!is_up || each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+    sockaddr_in own{};
+    std::memcpy(&own, each->ifa_addr, sizeof(own));
+    const ip::address_v4 next(ntohl(own.sin_addr.s_addr));
+    if (std::find(all.begin(), all.end(), ip::address(next)) == all.end()) all.emplace_back(next);
+  }
+  freeifaddrs(found);
+  return all;
+}
+
+/// A line each.
+std::string PageAddresses(const DashboardOptions& options,
+                          const DashboardServer& server,
+                          const std::string& token) {
+  std::string lines;
+  for (const ip::address& address : ReachableAt(ip::make_address(options.address))) {
+    const std::string host =
+        address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
+    lines += (lines.empty() ? "" : "\n") + std::string("http://") + host + ":" +
+             std::to_string(server.port()) + "/" + token + "/";
+  }
+  return lines;
 }
 
 /// The address lets its reader command the rig: it is shown to who sits at the terminal, and else
 /// lies in a file that its owner alone may read.
-void TellAddress(const std::string& address, const std::filesystem::path& file) {
-  SaveAddress(file, address);
-  spdlog::info("the page: {}", isatty(STDERR_FILENO) != 0 ? address : "see " + file.string());
+void TellAddresses(const std::string& lines, const std::filesystem::path& file) {
+  SaveAddresses(file, lines);
+  spdlog::info("the page: {}", isatty(STDERR_FILENO) != 0 ? lines : "see " + file.string());
 }
 
 void Run(const ProcessArgs& args) {
@@ -63,7 +92,7 @@ void Run(const ProcessArgs& args) {
 
   // The page can be opened before the module hears anything: tools/up waits for the latter only.
   DashboardServer server(options);
-  TellAddress(PageAddress(rig.dashboard, server, options.token), address_file);
+  TellAddresses(PageAddresses(rig.dashboard, server, options.token), address_file);
   Bus bus(args.lcm_url.value_or(rig.lcm_url));
   DashboardNode node(rig, &bus, &server, session);
   if (!ip::make_address(options.address).is_loopback()) {

@@ -1,6 +1,7 @@
 #include "dashboard/page_state.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -45,6 +46,27 @@ Json Outline(const BoardPose& pose_camera, const CameraModel& camera) {
   for (const Eigen::Vector3d& corner : pose_camera.corners_m) {
     if (!corner.allFinite() || !camera.IsInFront(corner)) return nullptr;
     array.push_back(List(Eigen::Vector2d(camera.Project(corner))));
+  }
+  return array;
+}
+
+/// Directions of sight round the image's border, some of each side, its corner first; none if the
+/// lens model does not reach so far.
+Json Border(const CameraModel& camera) {
+  constexpr int kNumOfSide = 6;
+  const double right = camera.width_px - 1;
+  const double bottom = camera.height_px - 1;
+  const std::array<Eigen::Vector2d, 4> corners = {
+      {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}}};
+  Json array = Json::array();
+  for (std::size_t side = 0; side < corners.size(); ++side) {
+    for (int i = 0; i < kNumOfSide; ++i) {
+      const Eigen::Vector2d step =
+          (corners[(side + 1) % corners.size()] - corners[side]) / kNumOfSide;
+      const auto ray = camera.Unproject(corners[side] + i * step);
+      if (!ray) return Json::array();
+      array.push_back(List(*ray));
+    }
   }
   return array;
 }
@@ -126,7 +148,9 @@ Json Sigma(const extrinsic_refined_t& refined, int first, double scale) {
 std::string RigJson(const Rig& rig) {
   Json json = Of(Slot::kRig);
   json["name"] = rig.name;
-  json["camera"] = {{"width_px", rig.camera.width_px}, {"height_px", rig.camera.height_px}};
+  json["camera"] = {{"width_px", rig.camera.width_px},
+                    {"height_px", rig.camera.height_px},
+                    {"border", Border(rig.camera)}};
   return Text(json);
 }
 

@@ -41,15 +41,6 @@ cv::Mat Small(const image_t& image, int factor) {
   return small;
 }
 
-std::string Header(const image_t& image, const char* type) {
-  return Json{{"kind", ToString(Slot::kImage)},
-              {"utime", image.utime},
-              {"width", image.width},
-              {"height", image.height},
-              {"type", type}}
-      .dump();
-}
-
 /// Every point with a return, or a part of them that no scan pattern of the lidar can favour: the
 /// multiples of the golden ratio spread evenly over [0, 1), and so do any of their subsequences by
 /// equal steps.
@@ -98,16 +89,29 @@ void AppendPixel(const Eigen::Vector3d& point_camera_m,
 
 }  // namespace
 
-FramePtr ImageFrame(const image_t& image, const DashboardOptions& options) {
+PageImage ForPage(const image_t& image, const DashboardOptions& options) {
   RequireSound(image);
+  PageImage made{image.utime, image.width, image.height, "image/jpeg", ""};
   const bool is_jpeg = image.pixelformat == kPixelMjpeg;
   const int factor = Reduction(image.width, options.max_image_width_px);
   if (factor == 1 && (is_jpeg || image.pixelformat == kPixelPng)) {
-    return BinaryFrame(Header(image, is_jpeg ? "image/jpeg" : "image/png"),
-                       {image.data.begin(), image.data.end()});
+    if (!is_jpeg) made.type = "image/png";
+    made.bytes.assign(image.data.begin(), image.data.end());
+  } else {
+    const std::vector<std::uint8_t> jpeg = EncodeJpeg(Small(image, factor), kJpegQuality);
+    made.bytes.assign(jpeg.begin(), jpeg.end());
   }
-  const std::vector<std::uint8_t> jpeg = EncodeJpeg(Small(image, factor), kJpegQuality);
-  return BinaryFrame(Header(image, "image/jpeg"), {jpeg.begin(), jpeg.end()});
+  return made;
+}
+
+FramePtr ImageFrame(const PageImage& image, const std::string& board_json) {
+  const Json header = {{"kind", ToString(Slot::kImage)},
+                       {"utime", image.utime},
+                       {"width", image.width_px},
+                       {"height", image.height_px},
+                       {"type", image.type},
+                       {"board", board_json.empty() ? Json() : Json::parse(board_json)}};
+  return BinaryFrame(header.dump(), image.bytes);
 }
 
 FramePtr CloudFrame(const PointCloud& cloud_lidar_m,

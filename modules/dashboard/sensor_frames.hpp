@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 
 #include <Eigen/Geometry>
 
@@ -12,10 +14,22 @@
 
 namespace voqcal {
 
-/// An image for the page: a JPEG or PNG that is small enough as it came, anything else halved until
-/// it fits and as JPEG. The header says the size in pixels of the original.
+/// An image as the page gets it.
+struct PageImage {
+  std::int64_t utime = 0;
+  int width_px = 0;  ///< Of the original...
+  int height_px = 0;
+  std::string type;   ///< "image/jpeg" or "image/png".
+  std::string bytes;  ///< ...which may be larger than these.
+};
+
+/// A JPEG or PNG that is small enough as it came, anything else halved until it fits and as JPEG.
 /// @throws std::runtime_error if it contradicts itself (RequireSound) or cannot be decoded.
-FramePtr ImageFrame(const image_t& image, const DashboardOptions& options);
+PageImage ForPage(const image_t& image, const DashboardOptions& options);
+
+/// The image with the board that was found in it and nowhere else.
+/// @param board_json  CameraBoardJson of this very image; empty: none is known.
+FramePtr ImageFrame(const PageImage& image, const std::string& board_json);
 
 /// A sweep for the page, thinned evenly over its scan lines, and where its points fall in the
 /// image.

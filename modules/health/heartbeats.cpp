@@ -19,12 +19,16 @@ std::int64_t NumReceived(const HeardModule* heard, const std::string& channel) {
   return 0;
 }
 
-std::vector<std::string> SessionsOf(const HeardModule& heard, HeardModule::Time now) {
-  std::vector<std::string> sessions;
-  for (const auto& [session, at] : heard.sessions) {
-    if (SecondsBetween(at, now) <= kSilenceS) sessions.push_back(session);
+/// Those lately heard, but for `own`: "a and of b"; and how many.
+std::pair<std::string, int> SessionsText(const std::map<std::string, HeardModule::Time>& sessions,
+                                         const std::string& own,
+                                         HeardModule::Time now) {
+  std::pair<std::string, int> text{"", 0};
+  for (const auto& [session, at] : sessions) {
+    if (session == own || SecondsBetween(at, now) > kSilenceS) continue;
+    text.first += (text.second++ == 0 ? "" : " and of ") + session;
   }
-  return sessions;
+  return text;
 }
 
 }  // namespace
@@ -32,6 +36,12 @@ std::vector<std::string> SessionsOf(const HeardModule& heard, HeardModule::Time 
 std::vector<std::string> AllModuleNames() {
   std::istringstream names(VOQCAL_MODULES);  // modules/names.txt
   return {std::istream_iterator<std::string>(names), {}};
+}
+
+bool IsDriver(const std::string& module) {
+  static const std::string kEnding = "_driver";
+  return module.size() > kEnding.size() &&
+         module.compare(module.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
 }
 
 double SecondsBetween(HeardModule::Time from, HeardModule::Time to) {
@@ -54,6 +64,10 @@ const HeardModule* Heartbeats::Find(const std::string& module) const {
 }
 
 void Heartbeats::Take(const module_status_t& status, Time now) {
+  if (status.state == kToBeStarted) {
+    to_be_started_[status.module][status.session] = now;
+    return;
+  }
   HeardModule heard{status, now};
   const HeardModule* before = Find(status.module);
   if (before != nullptr) {
@@ -81,6 +95,7 @@ void Heartbeats::NoteNews(const module_status_t& status, const HeardModule* befo
       if (channel.channel != stream.channel) continue;
       const std::int64_t num_new = channel.num_received - NumReceived(before, channel.channel);
       // What the first heartbeat counts may have come long ago.
+      stream.has_come_before = stream.has_come_before || channel.num_received > 0;
       const bool is_news = before != nullptr ? num_new > 0 : channel.rate_hz > 0;
       if (!is_news) continue;
       if (before != nullptr) {
@@ -101,19 +116,22 @@ void Heartbeats::NoteLosses(const module_status_t& status, const HeardModule* be
     for (const channel_status_t& channel : of.channels) num_lost += channel.num_lost;
     return num_lost;
   };
-  if (sum(status) > (before == nullptr ? 0 : sum(before->status))) last_loss_ = now;
+  // What the first heartbeat counts may have been lost long ago.
+  if (before != nullptr && sum(status) > sum(before->status)) last_loss_ = now;
 }
 
 std::vector<std::string> Heartbeats::Rivals(Time now, const std::string& own) const {
+  const int least = own.empty() ? 2 : 1;
   std::vector<std::string> rivals;
   for (const auto& [module, heard] : heard_) {
-    std::vector<std::string> sessions = SessionsOf(heard, now);
-    sessions.erase(std::remove(sessions.begin(), sessions.end(), own), sessions.end());
-    if (sessions.size() < (own.empty() ? 2U : 1U)) continue;
-    std::string names;
-    for (const std::string& session : sessions)
-      names += (names.empty() ? "" : " and of ") + session;
-    rivals.push_back(module + " of " + names + " runs on this network");
+    const auto [names, num] = SessionsText(heard.sessions, own, now);
+    if (num >= least) rivals.push_back(module + " of " + names + " runs on this network");
+  }
+  for (const auto& [module, sessions] : to_be_started_) {
+    const auto [names, num] = SessionsText(sessions, own, now);
+    if (num >= least) {
+      rivals.push_back(module + " of " + names + " is about to be started on this network");
+    }
   }
   return rivals;
 }

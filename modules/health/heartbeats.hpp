@@ -15,6 +15,13 @@ namespace voqcal {
 /// Every module of the flow, in its order.
 std::vector<std::string> AllModuleNames();
 
+/// It may end by itself: what it reads has an end. No other module may.
+bool IsDriver(const std::string& module);
+
+/// The state in a heartbeat that tools/up sends for a module that it is about to start: the network
+/// is taken before anything on it could read another session's messages.
+inline constexpr char kToBeStarted[] = "to be started";
+
 /// A module as its heartbeats tell.
 struct HeardModule {
   using Time = std::chrono::steady_clock::time_point;
@@ -34,9 +41,10 @@ struct HeardModule {
 /// A channel that samples are made of, as its readers count it.
 struct Stream {
   std::string channel;
-  std::string sender;  ///< The module that sends it.
-  std::string name;    ///< "lidar", "camera"; of a detector its module's name.
-  bool has_come = false;
+  std::string sender;            ///< The module that sends it.
+  std::string name;              ///< "lidar", "camera"; of a detector its module's name.
+  bool has_come = false;         ///< While its readers were heard...
+  bool has_come_before = false;  ///< ...or before: they had counted it.
   HeardModule::Time last_news{};
   double usual_gap_s = 0;
 };
@@ -59,8 +67,8 @@ class Heartbeats {
   /// Of the two sensors, then of their detectors.
   const std::vector<Stream>& streams() const { return streams_; }
 
-  /// A sentence for each module that sessions other than `own` run on this network; none: it is
-  /// free. With no `own`: for each module that more than one session runs.
+  /// A sentence for each module that sessions other than `own` run, or are about to start, on this
+  /// network; none: it is free. With no `own`: for each module that more than one session runs.
   std::vector<std::string> Rivals(Time now, const std::string& own = {}) const;
 
   /// "lidar_board_detector: 5 of 100 LIDAR_POINTS; ...": empty if nothing was lost.
@@ -74,6 +82,8 @@ class Heartbeats {
 
   std::vector<Stream> streams_;
   std::map<std::string, HeardModule> heard_;
+  std::map<std::string, std::map<std::string, Time>>
+      to_be_started_;  ///< Module, session: last told.
   std::optional<Time> last_loss_;
 };
 

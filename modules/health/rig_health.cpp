@@ -97,7 +97,7 @@ ModuleHealth RigHealth::HealthOf(const std::string& module, Time now) const {
     return HasEndedWell(module) ? ModuleHealth::kEnded : ModuleHealth::kSilent;
   }
   if (StartsWith(heard->status.state, "failed")) return ModuleHealth::kFailed;
-  if (heard->HasEnded()) return ModuleHealth::kEnded;
+  if (heard->HasEnded()) return IsDriver(module) ? ModuleHealth::kEnded : ModuleHealth::kSilent;
   return heard->IsSilent(now) ? ModuleHealth::kSilent : ModuleHealth::kGood;
 }
 
@@ -118,10 +118,18 @@ Flow RigHealth::FlowOf(const Stream& stream, Time now) const {
 }
 
 bool RigHealth::HasEndedWell(const std::string& module) const {
+  if (!IsDriver(module)) return false;
   const HeardModule* heard = heartbeats_.Find(module);
   if (heard != nullptr) return heard->HasEnded();
   const ProgramFacts* program = ProgramOf(module);
-  return program != nullptr && program->history.has_ended_well;
+  return program != nullptr && (program->history.has_ended_well || program->history.was_stopped);
+}
+
+std::string RigHealth::HowEnded(const std::string& module) const {
+  const HeardModule* heard = heartbeats_.Find(module);
+  if (heard != nullptr) return heard->status.state;
+  const ProgramFacts* program = ProgramOf(module);
+  return program != nullptr && program->history.was_stopped ? "stopped" : "done";
 }
 
 const ProgramFacts* RigHealth::ProgramOf(const std::string& name) const {
@@ -152,11 +160,13 @@ void RigHealth::AddDiskFault(std::vector<Fault>* faults) const {
 }
 
 void RigHealth::AddSupervisorFault(std::vector<Fault>* faults) const {
-  if (!facts_.is_supervisor_dead) return;
+  if (facts_.supervisor == SupervisorState::kRuns) return;
+  const bool is_dead = facts_.supervisor == SupervisorState::kDead;
   faults->push_back({"supervisor",
                      "What ends is not started again",
-                     "the session's supervisor was killed",
-                     "Run tools/down, then tools/up with the same --session: it goes on."});
+                     std::string("the session's supervisor was ") + (is_dead ? "killed" : "halted"),
+                     is_dead ? "Run tools/down, then tools/up with the same --session: it goes on."
+                             : "kill -CONT and the number in supervisord.pid lets it go on."});
 }
 
 void RigHealth::AddRivals(Time now, std::vector<Fault>* faults) const {
@@ -181,9 +191,10 @@ void RigHealth::AddStreamFaults(Time now, std::vector<Fault>* faults) const {
     if (flow == Flow::kNothingYet && may_come) continue;
     const std::string cause = CauseAt(stream.sender, now);
     const std::string who = is_sensor ? "The " + stream.name : stream.name;
-    const std::string what =
-        who + " has sent nothing " +
-        (flow == Flow::kSilent ? For(SecondsBetween(stream.last_news, now)) : "yet");
+    const std::string what = who + " has sent nothing " +
+                             (flow == Flow::kSilent    ? For(SecondsBetween(stream.last_news, now))
+                              : stream.has_come_before ? "lately"
+                                                       : "yet");
     const std::string file = stream.sender + ".txt in the session's folder says more.";
     faults->push_back({stream.name,
                        what,
@@ -227,6 +238,7 @@ std::string RigHealth::CauseAt(const std::string& module, Time now) const {
     case ModuleHealth::kFailed:
       return module + " " + status.state;
     case ModuleHealth::kSilent:
+      if (heard->HasEnded()) return module + " was stopped";
       return module + " has not answered " + For(SecondsBetween(heard->at, now));
     case ModuleHealth::kGood:
     case ModuleHealth::kEnded:

@@ -43,6 +43,8 @@ class RigHealth {
   std::vector<Fault> Faults(Time now) const;
 
   ModuleHealth HealthOf(const std::string& module, Time now) const;
+  /// Of a module that has ended: "done", or "stopped" by somebody.
+  std::string HowEnded(const std::string& module) const;
   /// Of one of the four channels that samples are made of.
   Flow FlowOf(const std::string& channel, Time now) const;
 

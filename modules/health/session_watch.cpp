@@ -1,8 +1,6 @@
 #include "health/session_watch.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -35,10 +33,18 @@ std::string LastLineOf(const std::string& text) {
   return last;
 }
 
-bool IsAlive(const std::filesystem::path& pid_file) {
+/// By the kernel's letter of its state: one that was killed may be there as a zombie yet.
+SupervisorState StateOf(const std::filesystem::path& pid_file) {
   std::ifstream file(pid_file);
-  pid_t pid = 0;
-  return (file >> pid) && pid > 0 && (kill(pid, 0) == 0 || errno == EPERM);
+  long pid = 0;
+  if (!(file >> pid) || pid <= 0) return SupervisorState::kDead;
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(stat, text);
+  const std::size_t name_end = text.rfind(") ");  // "7 (supervisord) S 1 ..."
+  const char letter = name_end == std::string::npos ? 'X' : text.at(name_end + 2);
+  if (letter == 'X' || letter == 'Z') return SupervisorState::kDead;
+  return letter == 'T' || letter == 't' ? SupervisorState::kHalted : SupervisorState::kRuns;
 }
 
 /// raw.lcm, raw.2.lcm, ...: the one that was written last.
@@ -82,7 +88,7 @@ SessionFacts ReadSession(const std::filesystem::path& folder, std::time_t now) {
   const std::filesystem::path pid_file = folder / "supervisord.pid";
   facts.is_supervised = std::filesystem::exists(pid_file, error);
   if (!facts.is_supervised) return facts;
-  facts.is_supervisor_dead = !IsAlive(pid_file);
+  facts.supervisor = StateOf(pid_file);
   auto histories = ReadSupervisorLog(TailOf(folder / "supervisord.log"));
   for (const std::string& name : ProgramsOf(TailOf(folder / "supervisor.conf"))) histories[name];
   for (const auto& [name, history] : histories) {

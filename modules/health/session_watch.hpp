@@ -18,11 +18,13 @@ struct ProgramFacts {
   std::string last_words;     ///< The last line that it wrote; may be empty.
 };
 
+enum class SupervisorState { kRuns, kHalted, kDead };
+
 /// What this host knows of a session.
 struct SessionFacts {
-  bool is_supervised = false;       ///< tools/up started it here, and nobody stopped it.
-  bool is_supervisor_dead = false;  ///< It was killed.
-  std::map<std::string, ProgramFacts> programs;    ///< By name; the recorder is "lcm-logger".
+  bool is_supervised = false;  ///< tools/up started it here, and nobody stopped it.
+  SupervisorState supervisor = SupervisorState::kRuns;  ///< If it is supervised.
+  std::map<std::string, ProgramFacts> programs;         ///< By name; the recorder is "lcm-logger".
   std::optional<std::int64_t> num_recorded_bytes;  ///< Of the newest raw*.lcm, if there is one.
   std::optional<std::int64_t> num_free_bytes;      ///< Of the folder's disk.
 };

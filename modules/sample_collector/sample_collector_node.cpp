@@ -1,6 +1,7 @@
 #include "sample_collector/sample_collector_node.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <stdexcept>
 #include <utility>
 
@@ -8,8 +9,10 @@
 
 #include "messaging/convert_board.hpp"
 #include "messaging/encode.hpp"
+#include "messaging/session_misses.hpp"
 #include "voqcal/event_t.hpp"
 #include "voqcal/image_t.hpp"
+#include "voqcal/module_status_t.hpp"
 #include "voqcal/pointcloud2_t.hpp"
 #include "voqcal/samples_t.hpp"
 
@@ -21,6 +24,9 @@ constexpr std::size_t kMaxBufferBytes = 256U << 20U;
 
 /// Samples and stops that the lidar was unsure of, together, before any tells where another is.
 constexpr std::size_t kFirstLook = 5;
+
+/// Fewer give no result.
+constexpr std::size_t kMinSamples = 3;
 
 /// A reason in CALIB_EVENT.
 constexpr char kByCommand[] = "by command";
@@ -44,9 +50,11 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
                                          const std::filesystem::path& session_folder)
     : channels_(rig.channels),
       bus_(*bus),
+      session_folder_(session_folder),
       picker_(rig.board, rig.sample_collector),
       sweeps_(kMaxBufferBytes),
       images_(kMaxBufferBytes),
+      heartbeats_(rig.channels),
       second_look_(rig),
       next_look_(kFirstLook),
       session_(session_folder),
@@ -68,6 +76,10 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
   bus_.Subscribe<camera_board_t>(
       channels_.camera_board, Queue::kEvery, [this](const camera_board_t& m) {
         OnBoard(m, &newest_camera_utime_);
+      });
+  bus_.Subscribe<module_status_t>(
+      channels_.module_status, Queue::kEvery, [this](const module_status_t& m) {
+        heartbeats_.Take(m, std::chrono::steady_clock::now());
       });
   bus_.Subscribe<command_t>(channels_.calib_command,
                             Queue::kEvery,
@@ -135,6 +147,10 @@ void SampleCollectorNode::RequestFinish() {
   finish_utime_ = std::max(sweeps_.NewestUtime(), images_.NewestUtime());
 }
 
+bool SampleCollectorNode::IsNetworkShared() const {
+  return !heartbeats_.Rivals(std::chrono::steady_clock::now()).empty();
+}
+
 bool SampleCollectorNode::IsTooLate(std::int64_t utime) const {
   return is_finished_ || (finish_utime_ && utime > *finish_utime_);
 }
@@ -184,8 +200,32 @@ void SampleCollectorNode::SayFinished() {
   LookAgain(/*is_resting=*/false);
   is_finish_requested_ = false;
   is_finished_ = true;
+  SaveMisses();
   Announce(samples().empty() ? 0 : samples().back().utime, "finished", 0, "");
   PublishSamples();
+}
+
+void SampleCollectorNode::SaveMisses() const try {
+  std::filesystem::remove(session_folder_ / kMissesLogName);  // of an earlier finish
+  if (samples().size() < kMinSamples) misses_.Save(session_folder_, *this);
+} catch (const std::exception& error) {  // the samples are what matters
+  spdlog::warn("what was seen is not kept: {}", error.what());
+}
+
+void SampleCollectorNode::NoteMiss(const lidar_board_t& message) {
+  misses_.Note(kMissSweepChannel,
+               kLidarMissChannel,
+               message.miss,
+               sweeps_.Find(message.utime),
+               EncodeMessage(message));
+}
+
+void SampleCollectorNode::NoteMiss(const camera_board_t& message) {
+  misses_.Note(kMissImageChannel,
+               kCameraMissChannel,
+               message.miss,
+               images_.Find(message.utime),
+               EncodeMessage(message));
 }
 
 template <typename Message>
@@ -199,6 +239,8 @@ void SampleCollectorNode::OnBoard(const BoardMessage& message, std::int64_t* new
   has_new_frames_ = true;
   *newest_utime = message.utime;
   if (IsTooLate(message.utime)) return;
+  if (IsNetworkShared()) return Count("frames while two sessions ran on one network");
+  if (!message.miss.empty()) NoteMiss(message);
   decltype(SightingFromMessage(message)) sighting;
   try {
     sighting = SightingFromMessage(message);
@@ -232,6 +274,7 @@ void SampleCollectorNode::Reset(std::int64_t utime) {
   picker_.ForgetPoses();
   CancelCapture();
   second_look_.Clear();
+  misses_.Clear();
   next_look_ = kFirstLook;
   GoOn();
   Announce(utime, "reset", 0, "");

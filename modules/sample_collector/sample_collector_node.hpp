@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "core/sampling/sample_picker.hpp"
+#include "health/heartbeats.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "rig/rig.hpp"
 #include "sample_collector/clock_watch.hpp"
+#include "sample_collector/miss_examples.hpp"
 #include "sample_collector/second_look.hpp"
 #include "sample_collector/session_log.hpp"
 #include "voqcal/camera_board_t.hpp"
@@ -51,6 +53,12 @@ class SampleCollectorNode : public Module {
   static void Keep(const Message& message, FrameBuffer* frames);
   template <typename BoardMessage>
   void OnBoard(const BoardMessage& message, std::int64_t* newest_utime);
+  /// Another session's detectors may say what this one's cannot be told from.
+  bool IsNetworkShared() const;
+  void NoteMiss(const lidar_board_t& message);
+  void NoteMiss(const camera_board_t& message);
+  /// Where there are too few samples for a result, what was seen instead.
+  void SaveMisses() const;
   void OnCommand(const command_t& message);
   void Discard(const command_t& message);
   void RequestFinish();
@@ -81,10 +89,13 @@ class SampleCollectorNode : public Module {
 
   Channels channels_;
   Bus& bus_;
+  std::filesystem::path session_folder_;
   SamplePicker picker_;
   FrameBuffer sweeps_;
   FrameBuffer images_;
   ClockWatch clocks_;
+  Heartbeats heartbeats_;
+  MissExamples misses_;
   SecondLook second_look_;
   std::size_t next_look_;  // at so many samples and kept stops
   SessionLog session_;

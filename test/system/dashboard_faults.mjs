@@ -41,6 +41,8 @@ function standInForTheServer() {
 }
 
 const FLOWING = { lidar: "flows", camera: "flows", lidar_board: "flows", camera_board: "flows" };
+/** Lines of sight through the corners of the image. */
+const BORDER = [[-0.6, -0.4, 0.7], [0.6, -0.4, 0.7], [0.6, 0.4, 0.7], [-0.6, 0.4, 0.7]];
 const NAMES = ["lidar_driver", "camera_driver", "lidar_board_detector", "camera_board_detector", "sample_collector"];
 const fault = (of, what, cause, remedy) => ({ of, what, cause, remedy, is_grave: true });
 const CHECK = "lidar_driver.txt in the session's folder says more.";
@@ -85,7 +87,8 @@ const tellHealth = (faults, flows) =>
 async function begin() {
   await page.goto("http://session.test/");
   while (!(await page.evaluate(() => typeof window.say === "function"))) await page.waitForTimeout(20);
-  await tell({ kind: "rig", name: "test_rig", camera: { width_px: 640, height_px: 400 } });
+  await tell({ kind: "rig", name: "test_rig", camera: { width_px: 640, height_px: 400, border: BORDER } });
+  await tell({ kind: "result", working_on: "", translation_m: [0.06, -0.1, -0.04], quaternion_xyzw: [0.5, -0.5, 0.5, 0.5] });
   await tell({ kind: "camera_board", utime: 1, miss: "", detail: "", outline_px: null, corners_px: [], warnings: [] });
   await tell({ kind: "lidar_board", utime: 1, miss: "", num_points: 300 });
   await tell({

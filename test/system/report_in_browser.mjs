@@ -1,11 +1,14 @@
 // report_in_browser.mjs REPORT [FOLDER]: opens a report as people do, in a browser at the sizes of a desk and a
 // phone, and ends with 1 and a line for each thing that is wrong. With FOLDER it leaves screenshots there.
 // 77: no Chromium here.
-import { join, resolve } from "node:path";
+import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { SIZES, openBrowser } from "./browser.mjs";
 
-const SECTIONS = ["transform", "errors", "sets", "lidar", "scene", "diagnosis", "poses", "rejected", "made-from"];
+const SECTIONS = {
+  "report.html": ["transform", "errors", "sets", "lidar", "scene", "diagnosis", "poses", "rejected", "made-from"],
+  "no_result.html": ["counts", "misses"],
+};
 const MAX_PICTURE_HEIGHT = 12_000;
 
 /** Runs in the page: what is wrong with it. */
@@ -54,7 +57,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     if (asked !== url && !asked.startsWith("data:")) problems.push(`${name}: asks for ${asked}`);
   });
   await page.goto(url);
-  for (const problem of await page.evaluate(inspect, SECTIONS)) problems.push(`${name}: ${problem}`);
+  for (const problem of await page.evaluate(inspect, SECTIONS[basename(report)])) problems.push(`${name}: ${problem}`);
   const loadMs = await page.evaluate(() => performance.getEntriesByType("navigation")[0].loadEventEnd);
   process.stdout.write(`${name}: shown after ${Math.round(loadMs)} ms\n`);
   if (folder) {

@@ -44,6 +44,43 @@ class Report : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
+// Two stops are too few: the page shows what was seen instead.
+TEST_F(Report, OfAFailureShowsWhatWasSeen) {
+  const std::string rig = folder_.Write(
+      "rig.yaml", test::Replaced(test::ShortRigText(), "\n  num_poses: 8", "\n  num_poses: 2"));
+  test::WriteStopsLog(LoadRig(rig), Path("raw.lcm"));
+  const std::string other = folder_.Write(  // a board that is not there
+      "other.yaml",
+      test::Replaced(ReadWholeFile(rig), "\n  num_corners_x: 5", "\n  num_corners_x: 3"));
+  const auto calibrate = [this](const std::string& rig_file, const std::string& out) {
+    return test::Run({test::Program("calibrate"),
+                      "--rig",
+                      rig_file,
+                      "--log",
+                      Path("raw.lcm"),
+                      "--out",
+                      Path(out)});
+  };
+  const test::Outcome few = calibrate(rig, "few");
+  EXPECT_EQ(few.status, 1);
+  EXPECT_THAT(few.err, HasSubstr("what was seen: " + Path("few/no_result.html")));
+  EXPECT_THAT(test::NamesIn(Path("few")), ::testing::ElementsAre("no_result.html"));
+  EXPECT_THAT(ReadWholeFile(Path("few/no_result.html")),
+              AllOf(HasSubstr("Sample 1"), HasSubstr("Sample 2"), HasSubstr("data:image/jpeg")));
+
+  EXPECT_EQ(calibrate(other, "none").status, 1);
+  const std::string none = ReadWholeFile(Path("none/no_result.html"));
+  EXPECT_THAT(none,
+              AllOf(HasSubstr("<h3>Camera: "),
+                    HasSubstr("num_corners_x"),
+                    HasSubstr("data:image/jpeg"),
+                    Not(HasSubstr("Sample 1"))));
+  const test::Outcome outcome =
+      test::Run({kWithNode, "node", kInBrowser, Path("none/no_result.html")});
+  if (outcome.status == kSkipped) GTEST_SKIP() << outcome.out;
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
 class SimulatedReport : public Report {
  protected:
   void SetUp() override {

@@ -80,6 +80,25 @@ TEST_F(Supervision, ASecondSessionOnTheNetworkIsRefused) {
   test::Run({test::Tool("down"), "--session", folder_.path() / "other"});
 }
 
+// Neither reads a message of the other: the network is taken before anything is started.
+TEST_F(Supervision, OfTwoSessionsThatStartAtOnceAtMostOneRuns) {
+  const std::string second = folder_.path() / "second";
+  test::Process other({test::Tool("up"), rig_, "--session", second, "--only", "voq_selector"},
+                      folder_.path() / "second.txt");
+  const test::Outcome first = Up({"--only", "voq_selector"});
+  const bool has_second_started = other.Wait() == 0;
+  EXPECT_FALSE(first.status == 0 && has_second_started);
+  if (first.status != 0) {
+    EXPECT_THAT(first.err, HasSubstr("on this network"));
+    EXPECT_THAT(test::NamesIn(folder_.path()), Not(::testing::Contains("a session")));
+  }
+  if (!has_second_started) {
+    EXPECT_THAT(ReadWholeFile(folder_.path() / "second.txt"), HasSubstr("on this network"));
+    EXPECT_THAT(test::NamesIn(folder_.path()), Not(::testing::Contains("second")));
+  }
+  test::Run({test::Tool("down"), "--session", second});
+}
+
 TEST_F(Supervision, AFolderOfAnotherRigIsRefused) {
   std::filesystem::create_directories(session_);
   folder_.Write("a session/rig.yaml", "rig: another\n");
@@ -164,6 +183,34 @@ TEST_F(Supervision, UpRefusesWhatItDoesNotKnow) {
   rig_ = folder_.Write("rig.yaml", "rig: [\n");
   EXPECT_EQ(Up({}).status, 1);
   EXPECT_THAT(test::NamesIn(folder_.path()), Not(::testing::Contains("a session")));
+}
+
+// The full numbers, of sessions and of faults: test/system/live_truth.py by hand.
+TEST_F(Supervision, PageStatusAndExitStatusTellWhatFails) {
+  const test::Outcome outcome =
+      test::Run({std::string(VOQCAL_SOURCE_DIR) + "/test/system/live_truth.py",
+                 "faults",
+                 "--rig",
+                 rig_,
+                 "--tries",
+                 "2",
+                 "--out",
+                 folder_.path() / "faults"});
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
+TEST_F(Supervision, ThePagesAddressIsAQrCodeForAPhone) {
+  const auto tell = [this](const std::string& addresses) {
+    const std::string file = folder_.Write("dashboard_url.txt", addresses);
+    return test::Run({"bash", test::Tool("common/tell_page.sh"), file}).out;
+  };
+  EXPECT_THAT(tell("http://127.0.0.1:8765/token/\n"),
+              AllOf(HasSubstr("the page: http://127.0.0.1:8765/token/\n"),
+                    HasSubstr("no QR code: this host alone reaches it")));
+  const std::string both = tell("http://192.0.2.7:8765/token/\nhttp://198.51.100.7:8765/token/\n");
+  EXPECT_THAT(both, HasSubstr("or: http://198.51.100.7:8765/token/\n"));
+  const bool has_qrencode = test::Run({"sh", "-c", "command -v qrencode"}).status == 0;
+  EXPECT_THAT(both, HasSubstr(has_qrencode ? "\u2588\u2588" : "qrencode is not installed"));
 }
 
 // The full number of 50 kills: test/system/kill_test.py by hand.

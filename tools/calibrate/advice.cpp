@@ -69,18 +69,21 @@ const char* TextOn(LidarBoardMiss miss) {
   return "";
 }
 
+bool BeginsWith(const std::string& text, const std::string& beginning) {
+  return text.compare(0, beginning.size(), beginning) == 0;
+}
+
+/// A detail may stand behind the reason: "joined to something below".
 /// @tparam Fault  kAmbiguous is its last.
 template <typename Fault>
 std::string AdviceOnCounted(const std::string& reason) {
   for (int i = 0; i <= static_cast<int>(Fault::kAmbiguous); ++i) {
     const auto fault = static_cast<Fault>(i);
-    if (ToString(fault) == reason) return TextOn(fault);
+    if (reason == ToString(fault) || BeginsWith(reason, std::string(ToString(fault)) + " ")) {
+      return TextOn(fault);
+    }
   }
   return {};
-}
-
-bool BeginsWith(const std::string& text, const std::string& beginning) {
-  return text.compare(0, beginning.size(), beginning) == 0;
 }
 
 // "boards: blurred" warns of boards that were found.

@@ -7,7 +7,8 @@
 namespace voqcal {
 
 /// What is likely wrong, and which key of the rig file to check, where nearly every frame of a
-/// module counts as `reason`; empty if there is nothing to say of it.
+/// module counts as `reason` (behind which a detail may stand); empty if there is nothing to say of
+/// it.
 std::string AdviceOn(const std::string& module, const std::string& reason);
 
 /// Where nearly every frame of a sensor, or every pair of frames, failed for one and the same

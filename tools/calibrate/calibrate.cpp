@@ -18,6 +18,7 @@
 #include "core/selection/offset_sign.hpp"
 #include "files/atomic_file.hpp"
 #include "messaging/log.hpp"
+#include "report/no_result.hpp"
 #include "report/write_report.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_doubts.hpp"
@@ -46,6 +47,7 @@ void Deliver(const std::filesystem::path& from, const std::filesystem::path& to)
   std::filesystem::create_directories(to, error);
   if (!std::filesystem::exists(from / kReportName))
     std::filesystem::remove(to / kReportName, error);
+  std::filesystem::remove(to / kNoResultName, error);
   for (const char* name : {kReportName, kSamplesLogName, kResultJsonName, kResultName}) {
     if (error || !std::filesystem::exists(from / name)) continue;
     std::filesystem::rename(from / name, to / name, error);
@@ -57,6 +59,17 @@ void Deliver(const std::filesystem::path& from, const std::filesystem::path& to)
 std::string EarlierResultIn(const std::filesystem::path& folder) {
   const std::filesystem::path result = folder / kResultName;
   return std::filesystem::exists(result) ? "; " + result.string() + " is of an earlier run" : "";
+}
+
+/// Makes a page of what was seen, where there is no result. @return where it is, as a line.
+std::string SeenInstead(const Rig& rig,
+                        const OfflineRun& run,
+                        const std::string& problem,
+                        const std::filesystem::path& session,
+                        const std::filesystem::path& out) {
+  const std::string page_problem = WriteNoResult(rig, problem, run.samples(), session, out);
+  return page_problem.empty() ? "\nwhat was seen: " + (out / kNoResultName).string()
+                              : "\nno page of what was seen: " + page_problem;
 }
 
 void Print(const CalibrateArgs& args, const OfflineRun& run, bool has_report) {
@@ -97,9 +110,11 @@ void RunCalibrate(const CalibrateArgs& args) {
   run->Finish(/*is_collecting_only=*/false);
   const std::string wrong_sign = WrongOffsetSign(run->samples(), rig.board);
   if (!run->assessor().result()) {
-    throw std::runtime_error(Given(args) + ": no calibration: " + run->assessor().problem() + " (" +
-                             CountsOf(*run) + ")" + EarlierResultIn(args.out) +
-                             FailureAdvice(*run) + (wrong_sign.empty() ? "" : "\n" + wrong_sign));
+    const std::string why = Given(args) + ": no calibration: " + run->assessor().problem();
+    const std::string advice = FailureAdvice(*run) + (wrong_sign.empty() ? "" : "\n" + wrong_sign);
+    throw std::runtime_error(why + " (" + CountsOf(*run) + ")" + EarlierResultIn(args.out) +
+                             advice +
+                             SeenInstead(rig, *run, why + advice, scratch.path(), args.out));
   }
   const std::string report_problem = WriteReport(rig, *run, scratch.path());
   Deliver(scratch.path(), args.out);

@@ -46,6 +46,6 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # the libraries, by dpkg-shlibdeps
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "liblcm-bin, supervisor, iproute2, python3, python3-jinja2")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-java, libjchart2d-java, default-jre, python3-matplotlib, nodejs, npm, zstd")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-java, libjchart2d-java, default-jre, python3-matplotlib, nodejs, npm, qrencode, zstd")
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/tools/cmake/link_command.cmake)
 include(CPack)

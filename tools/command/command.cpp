@@ -121,6 +121,15 @@ void WriteReport(const CommandArgs& args) {
   if (!problem.empty()) std::fprintf(stderr, "command: no report: %s\n", problem.c_str());
 }
 
+/// Where there is no result, a page of what was seen instead.
+void WriteWhatWasSeen(const CommandArgs& args) {
+  const std::filesystem::path page = args.session / "no_result.html";
+  std::filesystem::remove(page);
+  RunProgram({FileBesidePrograms("bin/report"), args.session.string(), "--rig", args.rig.string()});
+  if (std::filesystem::exists(page)) std::printf("what was seen: %s\n", page.c_str());
+  std::fflush(stdout);
+}
+
 // Until the collector says "finished" and the assessor has judged that very set of samples. The
 // command is sent again each second: it may have been lost.
 void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
@@ -146,8 +155,10 @@ void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
     }
     bus->HandleOnce(std::chrono::milliseconds(100));
   }
-  if (!assessment.problem.empty())
+  if (!assessment.problem.empty()) {
+    if (!args.session.empty()) WriteWhatWasSeen(args);
     throw std::runtime_error("no calibration: " + assessment.problem);
+  }
   std::printf("verdict  %s\n%d samples, held-out centre error %.2f mm mean\n",
               assessment.verdict_headline.c_str(),
               assessment.num_samples,

@@ -1,5 +1,6 @@
 #!/usr/bin/python3 -EsSB
 """make_report.py RESULT_JSON OVERLAYS OUT [CODE]: report.html of a result and the pictures of its samples.
+make_report.py --no-result JSON PICTURES OUT: no_result.html, of what was seen where there is no result.
 make_report.py --compile CODE: the template as code, which saves compiling it for each report.
 
 No network, no scripts in the page, the same bytes for the same input. Python's flags keep it to Debian's packages: of the
@@ -111,8 +112,10 @@ def range_figure(samples):
 
 def picture(folder, sample, kind):
     path = folder / f"{sample['id']:04d}_{kind}.jpg"
-    if not path.exists():
-        return None
+    return encoded(path) if path.exists() else None
+
+
+def encoded(path):
     return "data:image/jpeg;base64," + base64.b64encode(path.read_bytes()).decode()
 
 
@@ -189,14 +192,14 @@ class Code(jinja2.BytecodeCache):
                 bucket.write_bytecode(file)
 
 
-def page(code=None):
+def page(code=None, name="report.html.j2"):
     environment = jinja2.Environment(
         # Not by its path, which would be in the code.
         loader=jinja2.FunctionLoader(lambda name: (HERE / name).read_text(encoding="utf-8")), bytecode_cache=code,
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True,
     )
     environment.filters["minus"] = lambda text: str(text).replace("-", "\u2212")
-    return environment.get_template("report.html.j2")
+    return environment.get_template(name)
 
 
 def report(data, overlays, template):
@@ -222,7 +225,18 @@ def report(data, overlays, template):
 
 def main(result_json, overlays, out, code=None):
     data = json.loads(pathlib.Path(result_json).read_text(encoding="utf-8"))
-    text = report(data, pathlib.Path(overlays), page(code and Code(code, is_written=False)))
+    write(report(data, pathlib.Path(overlays), page(code and Code(code, is_written=False))), out)
+
+
+def no_result(what_was_seen, pictures, out):
+    data = json.loads(pathlib.Path(what_was_seen).read_text(encoding="utf-8"))
+    for part in data["misses"] + data["samples"]:
+        part["pictures"] = [encoded(pathlib.Path(pictures) / name) for name in part["files"]]
+    style = (HERE / "report.css").read_text(encoding="utf-8")
+    write(page(name="no_result.html.j2").render(data=data, style=style), out)
+
+
+def write(text, out):
     unfinished = pathlib.Path(f"{out}.unfinished")
     unfinished.write_text(text, encoding="utf-8")
     os.replace(unfinished, out)
@@ -231,7 +245,9 @@ def main(result_json, overlays, out, code=None):
 if __name__ == "__main__":
     if len(sys.argv) == 3 and sys.argv[1] == "--compile":
         page(Code(sys.argv[2], is_written=True))
+    elif len(sys.argv) == 5 and sys.argv[1] == "--no-result":
+        no_result(*sys.argv[2:])
     elif len(sys.argv) in (4, 5):
         main(*sys.argv[1:])
     else:
-        sys.exit("usage: make_report.py RESULT_JSON OVERLAYS_FOLDER OUT [CODE] | --compile CODE")
+        sys.exit("usage: make_report.py RESULT_JSON OVERLAYS_FOLDER OUT [CODE] | --no-result JSON PICTURES OUT | --compile CODE")

@@ -8,6 +8,7 @@
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
 #include "messaging/session_scenes.hpp"
+#include "report/no_result.hpp"
 #include "report/write_report.hpp"
 #include "rig/rig.hpp"
 
@@ -28,11 +29,16 @@ void Report(const ReportArgs& args) {
   const auto run = CollectSamples(rig, input, scratch.path());
   run->Finish(/*is_collecting_only=*/false);
   if (!run->assessor().result()) {
-    throw std::runtime_error(input.log->string() +
-                             ": no calibration: " + run->assessor().problem());
+    const std::string why = input.log->string() + ": no calibration: " + run->assessor().problem();
+    const std::string page_problem =
+        WriteNoResult(rig, why, run->samples(), args.session, args.session);
+    throw std::runtime_error(
+        why + (page_problem.empty() ? "\nwhat was seen: " + (args.session / kNoResultName).string()
+                                    : "\nno page of what was seen: " + page_problem));
   }
   const std::string problem = WriteReport(rig, *run, scratch.path());
   if (!problem.empty()) throw std::runtime_error(problem);
+  std::filesystem::remove(args.session / kNoResultName);
   std::cout << "written\n";
   for (const char* name : {kResultJsonName, kReportName}) {
     std::filesystem::rename(scratch.path() / name, args.session / name);

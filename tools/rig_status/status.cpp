@@ -16,6 +16,7 @@
 #include "health/session_watch.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/spin.hpp"
+#include "messaging/wall_clock.hpp"
 #include "rig/rig.hpp"
 #include "rig_status/status_page.hpp"
 #include "rig_status/terminal.hpp"
@@ -33,11 +34,14 @@ struct StatusArgs {
   bool is_once = false;
   bool has_details = false;
   double starting_s = 0;
-  std::optional<std::filesystem::path> alone_in;
+  std::optional<std::filesystem::path> take_for;
 };
 
 /// A heartbeat of each module, with room to spare.
 constexpr std::chrono::milliseconds kProbeDuration{1500};
+/// Who takes the network says so as often, and first hears for as long whether another does.
+constexpr std::chrono::milliseconds kClaimPeriod{100};
+constexpr int kNumClaimsBefore = 5;
 /// Two heartbeats of each module: rates of sending need both.
 constexpr std::chrono::milliseconds kOnceDuration{2500};
 /// Of looks into the session's folder.
@@ -74,6 +78,18 @@ class Listener {
       return flow == Flow::kFlows || flow == Flow::kEnded;
     };
     return has_come(rig_.channels.lidar_points) && has_come(rig_.channels.camera_image);
+  }
+
+  /// Says that these modules of a session are about to be started.
+  void Claim(const std::vector<std::string>& modules, const std::string& session) {
+    module_status_t message{};
+    message.utime = WallClockUs();
+    message.session = session;
+    message.state = kToBeStarted;
+    for (const std::string& module : modules) {
+      message.module = module;
+      bus_.Publish(rig_.channels.module_status, message);
+    }
   }
 
   const StatusPage& page() const { return page_; }
@@ -122,17 +138,16 @@ void PrintFaultsOfStart(const StatusArgs& args) {
   if (!faults.empty()) throw std::runtime_error(faults);
 }
 
-/// Fails if another session runs any of the modules on this network.
-void RequireAlone(const StatusArgs& args) {
-  Listener listener(args);
-  listener.Hear(kProbeDuration);
-  const RigHealth& health = listener.page().health();
-  const std::vector<std::string> ours = args.modules.empty() ? AllModuleNames() : args.modules;
+/// @throws std::runtime_error if another session runs any of the modules on this network, or is
+/// about to.
+void RequireNoRival(const Listener& listener,
+                    const std::vector<std::string>& modules,
+                    const std::string& session) {
   std::string problems;
   for (const std::string& rival :
-       health.heartbeats().Rivals(Clock::now(), SessionName(*args.alone_in))) {
+       listener.page().health().heartbeats().Rivals(Clock::now(), session)) {
     const std::string module = rival.substr(0, rival.find(' '));
-    if (std::find(ours.begin(), ours.end(), module) == ours.end()) continue;
+    if (std::find(modules.begin(), modules.end(), module) == modules.end()) continue;
     problems += listener.url() + ": " + rival + '\n';
   }
   if (problems.empty()) return;
@@ -140,6 +155,27 @@ void RequireAlone(const StatusArgs& args) {
       problems +
       "two sessions would mix their samples: stop the other one (tools/down), or give this rig "
       "another port in lcm.url");
+}
+
+/// Hears whether the network is free, takes it, and says "taken"; then says on the network that it
+/// is, until SIGTERM, so that of two sessions that start at once neither reads what the other
+/// sends.
+void TakeNetwork(const StatusArgs& args) {
+  const StopOnSignal stop;
+  const std::vector<std::string> modules = args.modules.empty() ? AllModuleNames() : args.modules;
+  const std::string session = SessionName(*args.take_for);
+  Listener listener(args);
+  listener.Hear(kProbeDuration);
+  RequireNoRival(listener, modules, session);
+  for (int num_claims = 0; !stop.IsRequested(); ++num_claims) {
+    if (num_claims == kNumClaimsBefore) {
+      std::puts("taken");
+      std::fflush(stdout);
+    }
+    listener.Claim(modules, session);
+    listener.Hear(kClaimPeriod);
+    RequireNoRival(listener, modules, session);
+  }
 }
 
 /// Until q or Ctrl-C.
@@ -162,7 +198,7 @@ void PrintEachSecond(const StatusArgs& args) {
 }
 
 void ShowStatus(const StatusArgs& args) {
-  if (args.alone_in) return RequireAlone(args);
+  if (args.take_for) return TakeNetwork(args);
   if (args.starting_s > 0) return PrintFaultsOfStart(args);
   if (args.is_once) return PrintOnce(args);
   PrintEachSecond(args);
@@ -193,9 +229,10 @@ int main(int argc, char** argv) {
                  args.starting_s,
                  "Wait so many seconds for all modules to run and both sensors to send; print only "
                  "what is wrong then, with status 1");
-  app.add_option("--alone-in",
-                 args.alone_in,
-                 "Listen for 1.5 s, print nothing; status 1 and who it is if a session other than "
-                 "this folder's runs any of the modules");
+  app.add_option(
+      "--take-for",
+      args.take_for,
+      "For tools/up: take the network for this session folder's modules, print \"taken\", "
+      "hold it until SIGTERM; status 1 and who it is if another session has it");
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::ShowStatus(args); });
 }

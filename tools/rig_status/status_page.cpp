@@ -117,8 +117,9 @@ std::string StatusPage::LineOf(const std::string& module, Time now) const {
   const ModuleHealth health = health_.HealthOf(module, now);
   const auto found = health_.heartbeats().heard().find(module);
   if (found == health_.heartbeats().heard().end()) {
-    return Format(
-        "%-22s %s\n", module.c_str(), health == ModuleHealth::kEnded ? "done" : "not heard");
+    const std::string how =
+        health == ModuleHealth::kEnded ? health_.HowEnded(module) : "not heard";
+    return Format("%-22s %s\n", module.c_str(), how.c_str());
   }
   const HeardModule& heard = found->second;
   std::string text = Format("%-22s %s", module.c_str(), heard.status.state.c_str());

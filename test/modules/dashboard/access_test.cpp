@@ -29,7 +29,7 @@ TEST(SaveAddress, LetsOnlyItsOwnerReadIt) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "url.txt";
   for (const char* address : {"http://a/", "http://b/"}) {
-    SaveAddress(file, address);
+    SaveAddresses(file, address);
     EXPECT_EQ(ReadWholeFile(file), std::string(address) + "\n");
     struct stat status {};
     ASSERT_EQ(stat(file.c_str(), &status), 0);
@@ -41,7 +41,7 @@ TEST(TokenOfSession, IsKeptWhereOnlyItsOwnerSawIt) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "url.txt";
   const std::string token = TokenOfSession(file);
-  SaveAddress(file, AddressOf(token));
+  SaveAddresses(file, AddressOf(token));
   EXPECT_EQ(TokenOfSession(file), token);
   ASSERT_EQ(chmod(file.c_str(), 0644), 0);
   EXPECT_NE(TokenOfSession(file), token);
@@ -55,7 +55,7 @@ TEST(TokenOfSession, IsNewWhereTheFileHoldsNone) {
                                   AddressOf("short"),
                                   std::string(200, '/'),
                                   AddressOf(std::string(64, 'x'))}) {
-    SaveAddress(file, text);
+    SaveAddresses(file, text);
     EXPECT_EQ(TokenOfSession(file).size(), 64U) << text;
     EXPECT_NE(AddressOf(TokenOfSession(file)), text);
   }

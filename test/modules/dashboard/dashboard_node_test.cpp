@@ -9,6 +9,7 @@
 #include "extrinsic_estimator/extrinsic_estimator_node.hpp"
 #include "extrinsic_refiner/extrinsic_refiner_node.hpp"
 #include "files/atomic_file.hpp"
+#include "messaging/convert_board.hpp"
 #include "messaging/convert_image.hpp"
 #include "modules/dashboard/web_client.hpp"
 #include "modules/nodes/chain_test.hpp"
@@ -215,6 +216,26 @@ TEST_F(DashboardNodeTest, ShowsNoMoreImagesThanItsRate) {
   }
   test::SocketClient page = Page();
   EXPECT_EQ(Next(&page, "image")["utime"], 0);
+}
+
+// Whichever comes first; another image's board is never drawn on it.
+TEST_F(DashboardNodeTest, ShowsAnImageWithTheBoardThatWasFoundInIt) {
+  const auto send_board = [this](const std::string& miss, std::int64_t utime) {
+    test::Send(&bus_,
+               rig_.channels.camera_board,
+               CameraBoardMessage(std::nullopt, miss, "", utime, utime));
+  };
+  send_board("no board", 1);
+  test::Send(
+      &bus_, rig_.channels.camera_image, ToMessage(cv::Mat(8, 8, CV_8UC1, cv::Scalar(9)), 5, 0));
+  send_board("blurred", 4);
+  send_board("glare", 5);
+  send_board("no board", 6);
+  test::SocketClient page = Page();
+  const Json image = Next(&page, "image");
+  EXPECT_EQ(image["utime"], 5);
+  EXPECT_EQ(image["board"]["utime"], 5);
+  EXPECT_EQ(image["board"]["miss"], "glare");
 }
 
 TEST_F(DashboardNodeTest, SaysWhatIsWrong) {

@@ -32,6 +32,21 @@ Json OneSample(const BoardSample& sample,
   return json["samples"].at(0);
 }
 
+TEST(RigJson, TellsWhereTheCameraLooks) {
+  const Rig rig = test::TestRig();
+  const Json border = Json::parse(RigJson(rig))["camera"]["border"];
+  ASSERT_EQ(border.size(), 24U);
+  // The first of each side is a corner of the image: from the top left on, clockwise.
+  const double right = rig.camera.width_px - 1;
+  const double bottom = rig.camera.height_px - 1;
+  const Eigen::Vector2d corners[] = {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}};
+  for (std::size_t side = 0; side < 4; ++side) {
+    const Json& ray = border[6 * side];
+    const Eigen::Vector3d direction(ray[0], ray[1], ray[2]);
+    EXPECT_LT((rig.camera.Project(direction) - corners[side]).norm(), 1e-6);
+  }
+}
+
 TEST(SamplesJson, SaysWhichWayTheBoardFaces) {
   const double angle = 0.3;
   // Camera: x right, y down, z forward; a normal points from the board to the camera.

@@ -50,7 +50,7 @@ image_t Jpeg(int width, int height) {
 
 TEST(ImageFrame, PassesASmallJpegOnAsItIs) {
   const image_t image = Jpeg(640, 400);
-  const Parts parts = Split(ImageFrame(image, {}));
+  const Parts parts = Split(ImageFrame(ForPage(image, {}), ""));
   EXPECT_EQ(parts.payload, std::string(image.data.begin(), image.data.end()));
   EXPECT_EQ(parts.header["kind"], "image");
   EXPECT_EQ(parts.header["utime"], 17);
@@ -65,7 +65,7 @@ TEST(ImageFrame, HalvesUntilItFits) {
                                                 {ToMessage(Picture(1280, 800), 17, 0), {640, 400}},
                                                 {ToMessage(Picture(640, 400), 17, 0), {640, 400}}};
   for (const auto& [image, size] : cases) {
-    const Parts parts = Split(ImageFrame(image, options));
+    const Parts parts = Split(ImageFrame(ForPage(image, options), ""));
     EXPECT_EQ(parts.header["width"], image.width);  // overlays are in the original's pixels
     EXPECT_EQ(parts.header["height"], image.height);
     const cv::Mat shown = cv::imdecode(
@@ -82,10 +82,10 @@ TEST(ImageFrame, RefusesWhatCannotBeDecoded) {
   options.max_image_width_px = 100;
   image_t image = Jpeg(1280, 800);
   std::fill(image.data.begin(), image.data.end(), std::uint8_t{0});
-  EXPECT_THROW(ImageFrame(image, options), std::runtime_error);
+  EXPECT_THROW(ForPage(image, options), std::runtime_error);
   image = Jpeg(640, 400);
   image.pixelformat = 7;
-  EXPECT_THROW(ImageFrame(image, options), std::runtime_error);
+  EXPECT_THROW(ForPage(image, options), std::runtime_error);
 }
 
 TEST(ImageFrame, RefusesAJpegWithoutBytes) {
@@ -94,7 +94,7 @@ TEST(ImageFrame, RefusesAJpegWithoutBytes) {
   for (const int width_px : {640, 1920}) {
     image.width = width_px;
     image.height = 400;
-    EXPECT_THROW(ImageFrame(image, {}), std::runtime_error) << width_px;
+    EXPECT_THROW(ForPage(image, {}), std::runtime_error) << width_px;
   }
 }
 
@@ -114,21 +114,21 @@ image_t WithSize(image_t jpeg, std::uint16_t height, std::uint16_t width) {
 
 // OpenCV throws above 2^30 pixels, and takes gigabytes for a little less.
 TEST(ImageFrame, RefusesASizeThatNoCameraHas) {
-  EXPECT_NO_THROW(ImageFrame(WithSize(Jpeg(1280, 800), 800, 1280), {}));
-  EXPECT_THROW(ImageFrame(WithSize(Jpeg(1280, 800), 40000, 40000), {}), std::runtime_error);
-  EXPECT_THROW(ImageFrame(WithSize(Jpeg(1280, 800), 32000, 32000), {}), std::runtime_error);
+  EXPECT_NO_THROW(ForPage(WithSize(Jpeg(1280, 800), 800, 1280), {}));
+  EXPECT_THROW(ForPage(WithSize(Jpeg(1280, 800), 40000, 40000), {}), std::runtime_error);
+  EXPECT_THROW(ForPage(WithSize(Jpeg(1280, 800), 32000, 32000), {}), std::runtime_error);
 }
 
 TEST(ImageFrame, RefusesAJpegOfAnotherSizeThanTheMessages) {
   for (const int width_px : {640, 1920}) {
     image_t image = Jpeg(width_px, 400);
     image.height = 401;
-    EXPECT_THROW(ImageFrame(image, {}), std::runtime_error) << width_px;
+    EXPECT_THROW(ForPage(image, {}), std::runtime_error) << width_px;
   }
 }
 
 TEST(ImageFrame, ShowsASingleRow) {
-  const Parts parts = Split(ImageFrame(ToMessage(Picture(1920, 1), 17, 0), {}));
+  const Parts parts = Split(ImageFrame(ForPage(ToMessage(Picture(1920, 1), 17, 0), {}), ""));
   const cv::Mat shown = cv::imdecode({parts.payload.data(), static_cast<int>(parts.payload.size())},
                                      cv::IMREAD_GRAYSCALE);
   EXPECT_EQ(shown.size(), cv::Size(960, 1));
@@ -136,7 +136,7 @@ TEST(ImageFrame, ShowsASingleRow) {
 
 TEST(ImageFrame, RefusesWhatNoJpegCanHold) {
   const image_t image = ToMessage(cv::Mat(70000, 1, CV_8UC1, cv::Scalar(9)), 17, 0);
-  EXPECT_THROW(ImageFrame(image, {}), std::runtime_error);
+  EXPECT_THROW(ForPage(image, {}), std::runtime_error);
 }
 
 /// A spinning lidar's sweep of 16 rings, firing by firing, as its driver orders it.

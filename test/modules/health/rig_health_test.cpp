@@ -144,6 +144,20 @@ TEST_F(RigHealthTest, ASensorThatNeverSentIsAFaultOnceItsDriverHasStarted) {
   EXPECT_THAT(Faults(), ElementsAre(Field(&Fault::what, "The lidar has sent nothing yet")));
 }
 
+// Who looks at a session only now knows what its readers have counted.
+TEST_F(RigHealthTest, ASensorThatFellSilentBeforeOneLookedIsNotCalledNew) {
+  Beat(6);
+  is_lidar_sending_ = false;
+  Beat(6);
+  RigHealth late{Channels{}, {}, At(now_s_)};
+  module_status_t status = Status("sample_collector");
+  status.channels[0].rate_hz = 0;
+  late.Take(status, At(now_s_));
+  late.Take(Status("lidar_driver"), At(now_s_));
+  EXPECT_THAT(late.Faults(At(now_s_)),
+              ::testing::Contains(Field(&Fault::what, "The lidar has sent nothing lately")));
+}
+
 TEST_F(RigHealthTest, ATroubleIsToldInItsModulesWords) {
   collector_state_ = "trouble: The camera's clock is 3600 s ahead; set both by one clock";
   Beat(6);
@@ -171,6 +185,29 @@ TEST_F(RigHealthTest, ASecondSessionIsAFault) {
               ElementsAre(Field(&Fault::cause, HasSubstr("host:/other and of host:/session"))));
 }
 
+TEST_F(RigHealthTest, ASessionThatIsAboutToStartIsARivalAndNoModule) {
+  Beat(6);
+  module_status_t other = Status("assessor");
+  other.session = "host:/other";
+  other.state = kToBeStarted;
+  health_.Take(other, At(now_s_));
+  EXPECT_THAT(health_.heartbeats().Rivals(At(now_s_), "host:/session"),
+              ElementsAre("assessor of host:/other is about to be started on this network"));
+  EXPECT_THAT(health_.heartbeats().Rivals(At(now_s_ + 4), "host:/session"), IsEmpty());
+  Beat();
+  EXPECT_THAT(Faults(), IsEmpty());
+}
+
+// Only sensors come to an end.
+TEST_F(RigHealthTest, AReaderThatWasStoppedIsAFault) {
+  Beat(6);
+  silent_ = "assessor";
+  module_status_t status = Status("assessor");
+  status.state = "stopped";
+  health_.Take(status, At(now_s_));
+  EXPECT_THAT(Faults(), ElementsAre(Field(&Fault::cause, "assessor was stopped")));
+}
+
 TEST_F(RigHealthTest, LossesAreToldAndAreNoReasonToStop) {
   Beat(6);
   num_lost_ = 5;
@@ -178,6 +215,12 @@ TEST_F(RigHealthTest, LossesAreToldAndAreNoReasonToStop) {
   ASSERT_THAT(Faults(), ElementsAre(Field(&Fault::what, "Messages are being lost")));
   EXPECT_FALSE(Faults()[0].is_grave);
   Beat(11);
+  EXPECT_THAT(Faults(), ElementsAre(Field(&Fault::what, "Messages were lost")));
+}
+
+TEST_F(RigHealthTest, LossesFromBeforeOneLookedAreNotBeingLostNow) {
+  num_lost_ = 5;
+  Beat();
   EXPECT_THAT(Faults(), ElementsAre(Field(&Fault::what, "Messages were lost")));
 }
 
@@ -259,6 +302,20 @@ TEST_F(RigHealthTest, DriversThatEndedAsPlannedAreNoFault) {
   }
   EXPECT_THAT(Faults(2.9), IsEmpty());
   EXPECT_EQ(health_.FlowOf("LIDAR_POINTS", At(now_s_ + 2.9)), Flow::kEnded);
+}
+
+// Also where only the supervisor's log tells so, to who did not hear its last heartbeat.
+TEST_F(RigHealthTest, ADriverThatWasStoppedHasEndedForWhoHeardItAndForWhoDidNot) {
+  is_camera_sending_ = false;
+  silent_ = "camera_driver";
+  Beat(6);
+  SessionFacts facts = Running();
+  facts.programs["camera_driver"].history.is_running = false;
+  facts.programs["camera_driver"].history.was_stopped = true;
+  health_.Take(facts, At(now_s_));
+  EXPECT_THAT(Faults(), IsEmpty());
+  EXPECT_EQ(health_.FlowOf("CAMERA_IMAGE", At(now_s_)), Flow::kEnded);
+  EXPECT_EQ(health_.HowEnded("camera_driver"), "stopped");
 }
 
 TEST(FaultText, IsOneLine) {

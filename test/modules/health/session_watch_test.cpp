@@ -1,7 +1,10 @@
 #include "health/session_watch.hpp"
 
+#include <csignal>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "support/temporary_folder.hpp"
@@ -52,7 +55,7 @@ TEST(ReadSession, TellsOfASessionThatRuns) {
   const std::time_t end = ReadSupervisorLog(kLog).at("assessor").unexpected_ends.at(0);
   const SessionFacts facts = ReadSession(folder.path(), end + 5);
   EXPECT_TRUE(facts.is_supervised);
-  EXPECT_FALSE(facts.is_supervisor_dead);
+  EXPECT_EQ(facts.supervisor, SupervisorState::kRuns);
   EXPECT_EQ(facts.programs.at("lcm-logger").last_words, "raw.lcm: No space left on device");
   EXPECT_EQ(facts.programs.at("assessor").num_ends_lately, 1);
   EXPECT_EQ(facts.programs.at("assessor").running_s, 4);  // it was started a second later
@@ -66,7 +69,25 @@ TEST(ReadSession, ASupervisorThatWasKilledLeavesItsNumberBehind) {
   const test::TemporaryFolder folder;
   EXPECT_FALSE(ReadSession(folder.path(), 0).is_supervised);
   folder.Write("supervisord.pid", "999999999\n");
-  EXPECT_TRUE(ReadSession(folder.path(), 0).is_supervisor_dead);
+  EXPECT_EQ(ReadSession(folder.path(), 0).supervisor, SupervisorState::kDead);
+}
+
+TEST(ReadSession, ASupervisorThatIsHaltedOrAZombieDoesNotRun) {
+  const test::TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    raise(SIGSTOP);
+    _exit(0);
+  }
+  folder.Write("supervisord.pid", std::to_string(child) + "\n");
+  int status = 0;
+  waitpid(child, &status, WUNTRACED);
+  EXPECT_EQ(ReadSession(folder.path(), 0).supervisor, SupervisorState::kHalted);
+  kill(child, SIGKILL);
+  siginfo_t ended{};
+  waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT);
+  EXPECT_EQ(ReadSession(folder.path(), 0).supervisor, SupervisorState::kDead);
+  waitpid(child, &status, 0);
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 #include "sample_collector/sample_collector_node.hpp"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "files/sha256.hpp"
+#include "messaging/session_misses.hpp"
 #include "modules/nodes/node_test.hpp"
 #include "support/sightings.hpp"
 #include "support/temporary_folder.hpp"
@@ -301,6 +303,58 @@ TEST_F(SampleCollectorNodeTest, FinishJudgesTheFramesThatWait) {
   EXPECT_THAT(Ids(), IsEmpty());
   node_->Finish();
   EXPECT_THAT(Ids(), ElementsAre(1));
+}
+
+TEST_F(SampleCollectorNodeTest, KeepsFramesWithoutABoardWhereFinishLeavesTooFewSamples) {
+  constexpr int kNumFrames = 9;
+  for (int i = 0; i < kNumFrames; ++i) {
+    const std::int64_t utime = 100'000 * i;
+    pointcloud2_t sweep{};
+    sweep.utime = utime;
+    sweep.seq = i;
+    test::Send(bus_.get(), rig_.channels.lidar_points, sweep);
+    const std::string miss = "joined to something: " + std::to_string(i) + " mm";
+    test::Send(bus_.get(), rig_.channels.lidar_board, LidarBoardMessage({}, miss, utime, i));
+    // Its image never came.
+    test::Send(bus_.get(),
+               rig_.channels.camera_board,
+               CameraBoardMessage(std::nullopt, "no board", "", utime, i));
+  }
+  node_->Finish();
+  const SessionMisses misses = ReadMisses(folder_.path());
+  std::map<std::string, std::int64_t> counts;
+  for (const counter_t& counter : misses.counts) counts[counter.name] = counter.count;
+  EXPECT_EQ(counts["LIDAR_MISS: joined to something: N mm"], kNumFrames);
+  EXPECT_EQ(counts["CAMERA_MISS: no board"], kNumFrames);
+  EXPECT_THAT(misses.images, IsEmpty());
+  // The fourth and the eighth of the reason, each with what was said of it.
+  ASSERT_THAT(misses.sweeps, SizeIs(2));
+  EXPECT_EQ(misses.sweeps[0].sweep.seq, 3);
+  EXPECT_EQ(misses.sweeps[1].sweep.seq, 7);
+  EXPECT_EQ(misses.sweeps[1].board.miss, "joined to something: 7 mm");
+
+  // With samples enough for a result there is nothing to explain.
+  Restart();
+  for (int stop = 0; stop < 3; ++stop) ShowStop(stop);
+  node_->Finish();
+  ASSERT_THAT(Ids(), SizeIs(3));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / kMissesLogName));
+}
+
+// Nobody can tell whose boards they are.
+TEST_F(SampleCollectorNodeTest, TakesNothingWhileTwoSessionsRunOnOneNetwork) {
+  module_status_t status{};
+  status.module = "camera_board_detector";
+  status.state = "running";
+  status.session = "host:/one";
+  test::Send(bus_.get(), rig_.channels.module_status, status);
+  ShowStop(0);
+  EXPECT_THAT(Ids(), ElementsAre(1));
+  status.session = "host:/another";
+  test::Send(bus_.get(), rig_.channels.module_status, status);
+  ShowStop(1);
+  EXPECT_THAT(Ids(), ElementsAre(1));
+  EXPECT_EQ(node_->counters().at("frames while two sessions ran on one network"), 8);
 }
 
 TEST_F(SampleCollectorNodeTest, OrderOfArrivalDoesNotMatter) {

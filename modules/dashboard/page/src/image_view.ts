@@ -1,18 +1,18 @@
 // The live image with what was found in it.
 
 import { rangePixel } from "./colours.ts";
-import { NOT_SEEN, type CameraBoard, type CloudFrame, type Guidance, type ImageFrame } from "./protocol.ts";
+import { NOT_SEEN, type CloudFrame, type Guidance, type ImageFrame } from "./protocol.ts";
 
-/** Corners are drawn on images that are at most so much older or newer. */
-const MAX_OFFSET_US = 300_000;
+/** Points take the colours of images that are at most so much older or newer: only what moves is then beside it. */
+const MAX_COLOUR_OFFSET_US = 2_000_000;
 
 export class ImageView {
   private bitmap: ImageBitmap | null = null;
   private frame: ImageFrame | null = null;
   private cloud: CloudFrame | null = null;
-  private board: CameraBoard | null = null;
   private guidance: Guidance | null = null;
   private drawnCloud: CloudFrame | null = null;
+  private pixels: { of: ImageBitmap; data: ImageData } | null = null;
   private readonly context: CanvasRenderingContext2D;
   private readonly points = document.createElement("canvas").getContext("2d")!;
 
@@ -38,13 +38,27 @@ export class ImageView {
     this.cloud = cloud;
   }
 
-  showBoard(board: CameraBoard): void {
-    this.board = board;
+  /** The image's colour (0 to 1) at a point of a sweep; null where it does not show it. */
+  colourOf({ pixels, utime }: CloudFrame, point: number): [number, number, number] | null {
+    const { bitmap, frame } = this;
+    if (!pixels || !bitmap || !frame || Math.abs(utime - frame.utime) > MAX_COLOUR_OFFSET_US) return null;
+    const u = pixels[2 * point]!;
+    if (u === NOT_SEEN) return null;
+    const scale = bitmap.width / frame.width;
+    const clamp = (at: number, size: number) => Math.min(Math.max(Math.floor(scale * (at + 0.5)), 0), size - 1);
+    const at = 4 * (clamp(pixels[2 * point + 1]!, bitmap.height) * bitmap.width + clamp(u, bitmap.width));
+    const { data } = this.pixelsOf(bitmap);
+    return [data[at]! / 255, data[at + 1]! / 255, data[at + 2]! / 255];
   }
 
-  /** Of frames that no longer come. */
-  forgetBoard(): void {
-    this.board = null;
+  /** Without what is drawn on it. */
+  private pixelsOf(bitmap: ImageBitmap): ImageData {
+    if (this.pixels?.of !== bitmap) {
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d", { willReadFrequently: true })!;
+      context.drawImage(bitmap, 0, 0);
+      this.pixels = { of: bitmap, data: context.getImageData(0, 0, bitmap.width, bitmap.height) };
+    }
+    return this.pixels.data;
   }
 
   /** Null: no order is given. */
@@ -85,8 +99,9 @@ export class ImageView {
   }
 
   private drawBoard(scale: number): void {
-    const { board, frame, context } = this;
-    if (!board || board.miss || Math.abs(board.utime - frame!.utime) > MAX_OFFSET_US) return;
+    const { context } = this;
+    const board = this.frame!.board;
+    if (!board || board.miss) return;
     if (board.outline_px) this.drawPolygon(board.outline_px, scale, "#31d158", []);
     context.fillStyle = "#31d158";
     context.strokeStyle = "#003b12";

@@ -73,18 +73,16 @@ function showOrder(order: Guidance | null): void {
   actions.setEnough(order?.is_enough ?? false);
 }
 
-/** What is stale looks stale: its picture is grey, and its board no longer "found". */
+/** What is stale looks stale: its picture is grey, and what was said of it is said to be over. */
 function showFlow(sensor: "camera" | "lidar", flows: HealthView["flows"]): void {
   byId(`${sensor === "camera" ? "image" : "scene"}-panel`).dataset.flow = flows[sensor];
   const flow = flows[sensor] === "flows" ? flows[`${sensor}_board`] : flows[sensor];
   byId(`${sensor}-state`).dataset.flow = flow;
   const isOver = flow === "silent" || flow === "ended";
   setText(`${sensor}-flow`, isOver ? `${flow}; before: ` : "");
-  if (sensor === "camera" && flow !== "flows") image.forgetBoard();
 }
 
 function showCameraBoard(board: CameraBoard): void {
-  image.showBoard(board);
   const found = ["board found", ...(board.warnings ?? [])].join(", ");
   setText("camera-state", board.miss ? `${board.miss}${board.detail ? `: ${board.detail}` : ""}` : found);
 }
@@ -114,6 +112,7 @@ function take(message: Message): void {
       document.title = `${message.name}: calibration`;
       setText("rig", message.name);
       coverage.showRig(message);
+      scene?.showRig(message);
       break;
     case "samples":
       showSamples(message, (id) => actions.send({ command: "discard", sample_id: id }));
@@ -123,6 +122,7 @@ function take(message: Message): void {
       break;
     case "result":
       showResult(message);
+      scene?.showResult(message);
       break;
     case "guidance":
       guidance = message;
@@ -145,5 +145,7 @@ function take(message: Message): void {
 }
 
 setInterval(showHealth, 500);
+const isColoured = byId<HTMLInputElement>("is-coloured");
+scene?.colourBy((cloud, point) => (isColoured.checked ? image.colourOf(cloud, point) : null));
 byId("look-along").addEventListener("click", () => scene?.lookAlong());
 connection.open();

@@ -2,11 +2,17 @@
 
 export type Point2 = [number, number];
 export type Point3 = [number, number, number];
+export type Quaternion = [number, number, number, number];
 
 export interface Rig {
   kind: "rig";
   name: string;
-  camera: { width_px: number; height_px: number };
+  camera: {
+    width_px: number;
+    height_px: number;
+    /** Directions of sight round the image's border, in the camera's frame: as many of each side, its corner first. */
+    border: Point3[];
+  };
 }
 
 export interface Sample {
@@ -52,7 +58,7 @@ export interface Result {
   method?: string;
   num_samples?: number;
   translation_m?: Point3;
-  quaternion_xyzw?: [number, number, number, number];
+  quaternion_xyzw?: Quaternion;
   sigma_deg?: (number | null)[];
   sigma_mm?: (number | null)[];
   held_out?: { centre_px: Spread; centre_mm: Spread };
@@ -127,6 +133,8 @@ export interface ImageFrame {
   utime: number;
   width: number;
   height: number;
+  /** What was found in this very image; null: not known. */
+  board: CameraBoard | null;
   data: Blob;
 }
 

@@ -3,7 +3,11 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { rangeColour, themeColour } from "./colours.ts";
-import type { CloudFrame, Guidance, LidarBoard, Point3, Samples } from "./protocol.ts";
+import { frustum, ground, groundHeight } from "./landmarks.ts";
+import type { CloudFrame, Guidance, LidarBoard, Point3, Result, Rig, Samples } from "./protocol.ts";
+
+/** Red, green and blue (0 to 1) of a point; null where the camera does not see it. */
+export type PixelColour = (cloud: CloudFrame, point: number) => readonly [number, number, number] | null;
 
 const UP = new THREE.Vector3(0, 0, 1);
 /** What moves by itself is drawn no more often: phones have batteries. */
@@ -21,6 +25,10 @@ export class SceneView {
   private readonly board = new THREE.Group();
   private readonly samples = new THREE.Group();
   private readonly ghost = new THREE.Group();
+  private readonly sight = new THREE.Group();
+  private hasGround = false;
+  private border: Point3[] = [];
+  private pixelColour: PixelColour = () => null;
   private isAsked = false;
   private isInSight = false;
   private drawnAt = 0;
@@ -36,7 +44,7 @@ export class SceneView {
       "The lidar's sweep with the board, the samples and the next pose. Drag to turn, pinch to zoom, arrow keys to move.",
     );
     this.points.frustumCulled = false;
-    this.scene.add(this.points, this.board, this.samples, this.ghost, new THREE.AxesHelper(0.5));
+    this.scene.add(this.points, this.board, this.samples, this.ghost, this.sight, new THREE.AxesHelper(0.5));
     this.camera.up.copy(UP);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.listenToKeyEvents(this.renderer.domElement);
@@ -57,13 +65,29 @@ export class SceneView {
     this.draw(0);
   }
 
+  showRig({ camera }: Rig): void {
+    this.border = camera.border;
+  }
+
+  /** Where the camera is, once that is known. */
+  showResult({ translation_m, quaternion_xyzw }: Result): void {
+    const isKnown = translation_m && quaternion_xyzw && this.border.length > 0;
+    this.replace(this.sight, isKnown ? [frustum(this.border, translation_m, quaternion_xyzw)] : []);
+  }
+
+  /** From now on points have this colour, and that of their range where there is none. */
+  colourBy(pixelColour: PixelColour): void {
+    this.pixelColour = pixelColour;
+  }
+
   showCloud(cloud: CloudFrame): void {
     const { positions_m } = cloud;
     const colours = new Float32Array(positions_m.length);
     for (let i = 0; i < positions_m.length; i += 3) {
       const range_m = Math.hypot(positions_m[i]!, positions_m[i + 1]!, positions_m[i + 2]!);
-      colours.set(rangeColour(range_m), i);
+      colours.set(this.pixelColour(cloud, i / 3) ?? rangeColour(range_m), i);
     }
+    this.showGround(positions_m);
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(positions_m, 3));
     geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
@@ -71,6 +95,13 @@ export class SceneView {
     this.points.geometry = geometry;
     this.holder.dataset.utime = `${cloud.utime}`;
     this.draw();
+  }
+
+  private showGround(positions_m: Float32Array): void {
+    const height_m = this.hasGround ? null : groundHeight(positions_m);
+    if (height_m === null) return;
+    this.hasGround = true;
+    this.scene.add(ground(height_m));
   }
 
   showBoard(board: LidarBoard): void {

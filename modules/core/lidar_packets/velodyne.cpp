@@ -1,8 +1,11 @@
 #include "core/lidar_packets/velodyne.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <yaml-cpp/yaml.h>
 
@@ -24,7 +27,7 @@ constexpr std::uint8_t kDual = 0x39;
 
 // What tells one model from another.
 struct Model {
-  std::uint8_t product;  // last byte of its packets; 0: it has none
+  std::vector<std::uint8_t> products;  // last byte of its packets, one of these; none: it has none
   int num_lasers;
   double unit_m;                  // of distance
   double firing_us;               // from a firing of all lasers to the next
@@ -62,8 +65,8 @@ class Decoder {
     if (bytes.size != kPacketBytes) return PacketFault::kWrongSize;
     const View view(bytes);
     if (!IsOurs(view)) return PacketFault::kAlien;
-    const bool is_dual = model_.product != 0 && view.Mode() == kDual;
-    if (model_.product != 0 && !is_dual && view.Mode() != kStrongest && view.Mode() != kLast) {
+    const bool is_dual = HasFactoryBytes() && view.Mode() == kDual;
+    if (HasFactoryBytes() && !is_dual && view.Mode() != kStrongest && view.Mode() != kLast) {
       return PacketFault::kUnknownMode;
     }
     LidarPacket packet;
@@ -81,21 +84,25 @@ class Decoder {
   }
 
  private:
+  bool HasFactoryBytes() const { return !model_.products.empty(); }
+  bool IsProduct(std::uint8_t product) const {
+    const auto& known = model_.products;
+    return known.empty() || std::find(known.begin(), known.end(), product) != known.end();
+  }
   int BlocksOfFiring() const { return std::max(1, model_.num_lasers / kLasersOfBlock); }
   int FiringsOfBlock() const { return std::max(1, kLasersOfBlock / model_.num_lasers); }
 
   // The banks of 32 lasers in their order: 0xEEFF, 0xDDFF, 0xCCFF, 0xBBFF.
   bool IsOurs(const View& view) const {
     const int num_banks = BlocksOfFiring();
-    const bool is_dual = view.Mode() == kDual;
+    const bool is_dual = HasFactoryBytes() && view.Mode() == kDual;
     for (int block = 0; block < kNumBlocks; ++block) {
-      const int bank = (is_dual && model_.product != 0 ? block / 2 : block) % num_banks;
+      const int bank = (is_dual ? block / 2 : block) % num_banks;
       const bool is_padding = is_dual && num_banks == 4 && block >= 8;
       if (is_padding) break;
       if (view.Flag(block) != 0xEEFF - 0x1100 * bank || view.Azimuth(block) >= kTurn) return false;
     }
-    return (model_.product == 0 || view.Product() == model_.product) &&
-           view.TimeUs() < kVelodyneClockUs;
+    return IsProduct(view.Product()) && view.TimeUs() < kVelodyneClockUs;
   }
 
   // How far the head turns during a group, centidegrees. The last of a packet takes the one before
@@ -248,30 +255,33 @@ BeamTable Vls128Beams() {
 }  // namespace
 
 PacketDecoder MakeVelodyneVlp16(const LidarUnit& unit) {
-  return MakeDecoder({0x22, 16, 0.002, 55.296, &Vlp16LaserUs, &Vlp16LaserUs, TwoHalves(16, -15, 2)},
-                     unit);
+  return MakeDecoder(
+      {{0x22}, 16, 0.002, 55.296, &Vlp16LaserUs, &Vlp16LaserUs, TwoHalves(16, -15, 2)}, unit);
 }
 
 PacketDecoder MakeVelodyneVlp16HiRes(const LidarUnit& unit) {
   return MakeDecoder(
-      {0x24, 16, 0.002, 55.296, &Vlp16LaserUs, &Vlp16LaserUs, TwoHalves(16, -10, 4.0 / 3)}, unit);
+      {{0x24}, 16, 0.002, 55.296, &Vlp16LaserUs, &Vlp16LaserUs, TwoHalves(16, -10, 4.0 / 3)}, unit);
 }
 
 PacketDecoder MakeVelodyneVlp32c(const LidarUnit& unit) {
-  return MakeDecoder({0x28, 32, 0.004, 55.296, &Vlp32LaserUs, &Vlp32TurnUs, Vlp32Beams()}, unit);
+  return MakeDecoder({{0x28}, 32, 0.004, 55.296, &Vlp32LaserUs, &Vlp32TurnUs, Vlp32Beams()}, unit);
 }
 
+// 0x63 is what the first manual says, 0xA1 what the Alpha Prime sends.
 PacketDecoder MakeVelodyneVls128(const LidarUnit& unit) {
-  return MakeDecoder({0x63, 128, 0.004, 53.3, &Vls128LaserUs, &Vls128LaserUs, Vls128Beams()}, unit);
+  return MakeDecoder(
+      {{0x63, 0xA1}, 128, 0.004, 53.3, &Vls128LaserUs, &Vls128LaserUs, Vls128Beams()}, unit);
 }
 
 PacketDecoder MakeVelodyneHdl32e(const LidarUnit& unit) {
   return MakeDecoder(
-      {0x21, 32, 0.002, 46.08, &Hdl32LaserUs, &Hdl32LaserUs, TwoHalves(32, -30.67, 4.0 / 3)}, unit);
+      {{0x21}, 32, 0.002, 46.08, &Hdl32LaserUs, &Hdl32LaserUs, TwoHalves(32, -92.0 / 3, 4.0 / 3)},
+      unit);
 }
 
 PacketDecoder MakeVelodyneHdl64e(const LidarUnit& unit) {
-  return MakeDecoder({0, 64, 0.002, 46.25, &Hdl64LaserUs, &Hdl64LaserUs, BeamTable(64)}, unit);
+  return MakeDecoder({{}, 64, 0.002, 46.25, &Hdl64LaserUs, &Hdl64LaserUs, BeamTable(64)}, unit);
 }
 
 }  // namespace voqcal

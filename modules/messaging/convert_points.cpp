@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/lidar/cloud_fields.hpp"
@@ -187,11 +188,23 @@ std::int64_t CheckedRowStep(const pointcloud2_t& message) {
   return row_step;
 }
 
-float TimeAfterUtimeS(double value, bool is_integer, std::int64_t utime) {
-  const double time_s = is_integer ? value * 1e-9 : value;
+/// A sweep tells by its range what its times count. One of a few points does not: whole numbers are
+/// nanoseconds, others seconds, as drivers mostly have it.
+void SetPointTimes(std::vector<double> times,
+                   bool are_whole,
+                   std::int64_t utime,
+                   PointCloud* cloud) {
+  const double stamp_s = 1e-6 * static_cast<double>(utime);
+  SetTimes(times, cloud, stamp_s);
+  if (cloud->has_time) return;
   constexpr double kSurelyEpochS = 1e8;
-  const bool is_since_epoch = time_s > kSurelyEpochS;
-  return static_cast<float>(is_since_epoch ? time_s - 1e-6 * static_cast<double>(utime) : time_s);
+  constexpr double kLongestSweepS = 2.5;
+  for (double& time : times) {
+    if (are_whole) time *= 1e-9;
+    if (time > kSurelyEpochS) time -= stamp_s;
+    if (std::abs(time) > kLongestSweepS) return;
+  }
+  SetTimes(times, cloud);
 }
 
 }  // namespace
@@ -235,12 +248,13 @@ PointCloud FromMessage(const pointcloud2_t& message) {
   const auto ring = Reader(message, "ring");
   const auto time = Reader(message, "time");
   cloud.has_intensity = intensity.has_value();
-  cloud.has_time = time.has_value();
 
   cloud.points.reserve(static_cast<std::size_t>(message.width) *
                        static_cast<std::size_t>(message.height));
   std::vector<double> rings;
+  std::vector<double> times;
   if (ring) rings.reserve(cloud.points.capacity());
+  if (time) times.reserve(cloud.points.capacity());
   for (std::int64_t row = 0; row < message.height; ++row) {
     const std::uint8_t* bytes = message.data.data() + row * row_step;
     for (std::int32_t i = 0; i < message.width; ++i, bytes += message.point_step) {
@@ -248,11 +262,12 @@ PointCloud FromMessage(const pointcloud2_t& message) {
       point.position_m = Eigen::Vector3d(x.Read(bytes), y.Read(bytes), z.Read(bytes)).cast<float>();
       if (intensity) point.intensity = static_cast<float>(intensity->Read(bytes));
       if (ring) rings.push_back(ring->Read(bytes));
-      if (time) point.time_s = TimeAfterUtimeS(time->Read(bytes), time->IsInteger(), message.utime);
+      if (time) times.push_back(time->Read(bytes));
       cloud.points.push_back(point);
     }
   }
   if (ring) SetRings(rings, &cloud);
+  if (time) SetPointTimes(std::move(times), time->IsInteger(), message.utime, &cloud);
   DropRepeatedPoints(&cloud);
   return cloud;
 }

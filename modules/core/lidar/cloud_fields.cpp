@@ -92,6 +92,13 @@ bool IsOfSomeClock(const Range& range, double per_second) {
   return std::min(std::abs(range.least), std::abs(range.most)) > kFarS * per_second;
 }
 
+double Origin(const Range& range, double per_second, std::optional<double> stamp_s) {
+  constexpr double kSameClockS = 10.0;
+  if (!IsOfSomeClock(range, per_second)) return 0.0;
+  const bool is_stamps = stamp_s && std::abs(range.least / per_second - *stamp_s) < kSameClockS;
+  return is_stamps ? *stamp_s * per_second : range.least;
+}
+
 }  // namespace
 
 std::optional<std::size_t> FindField(const std::vector<std::string>& names,
@@ -114,12 +121,12 @@ void SetRings(const std::vector<double>& rings, PointCloud* cloud) {
   }
 }
 
-void SetTimes(const std::vector<double>& times, PointCloud* cloud) {
+void SetTimes(const std::vector<double>& times, PointCloud* cloud, std::optional<double> stamp_s) {
   const Range range = FiniteRange(times);
   const std::optional<double> per_second = PerSecond(range);
   if (!per_second) return;
   cloud->has_time = true;
-  const double origin = IsOfSomeClock(range, *per_second) ? range.least : 0.0;
+  const double origin = Origin(range, *per_second, stamp_s);
   for (std::size_t i = 0; i < times.size(); ++i) {
     cloud->points[i].time_s = static_cast<float>((times[i] - origin) / *per_second);
   }

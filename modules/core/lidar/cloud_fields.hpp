@@ -24,10 +24,14 @@ std::optional<std::size_t> FindField(const std::vector<std::string>& names, std:
 void SetRings(const std::vector<double>& rings, PointCloud* cloud);
 
 /// Gives each point its time. What the numbers count (seconds to nanoseconds) is told by their
-/// range, as sweeps last 4 ms to 2.5 s; numbers far from 0 are of some clock and counted from the
-/// first. The cloud has no times if they are none.
+/// range, as sweeps last 4 ms to 2.5 s; numbers far from 0 are of some clock: of the stamp's, if
+/// they are within 10 s of it, else counted from the first. The cloud has no times if they are
+/// none.
 ///
 /// @param times  as they were read, one for each point of the cloud.
-void SetTimes(const std::vector<double>& times, PointCloud* cloud);
+/// @param stamp_s  of the cloud, if it has one: its times count from there.
+void SetTimes(const std::vector<double>& times,
+              PointCloud* cloud,
+              std::optional<double> stamp_s = std::nullopt);
 
 }  // namespace voqcal

@@ -157,6 +157,41 @@ TEST(PointCloudMessage, ReadsTimesSinceTheEpoch) {
   EXPECT_NEAR(FromMessage(message).points[0].time_s, 0.05, 1e-6);
 }
 
+/// A sweep of 0.1 s whose times count `per_second` from `origin`.
+template <typename T>
+PointCloud SweepWithTimes(std::int8_t datatype, double per_second, double origin) {
+  constexpr int kNumPoints = 11;
+  pointcloud2_t message{};
+  message.utime = kUtime;
+  message.width = kNumPoints;
+  message.height = 1;
+  for (const char* axis : {"x", "y", "z"}) AddField(axis, 7, 0, &message);
+  AddField("time_stamp", datatype, 4, &message);
+  for (int i = 0; i < kNumPoints; ++i) {
+    Put<float>(1.0F + static_cast<float>(i), false, &message.data);
+    Put<T>(static_cast<T>(origin + per_second * 0.01 * i), false, &message.data);
+  }
+  message.point_step = 4 + static_cast<std::int32_t>(sizeof(T));
+  message.row_step = message.data_nbytes = static_cast<std::int32_t>(message.data.size());
+  return FromMessage(message);
+}
+
+TEST(PointCloudMessage, TellsTheUnitOfTimesByTheirRange) {
+  constexpr double kStampS = 1e-6 * kUtime;
+  for (const PointCloud& cloud : {SweepWithTimes<std::uint32_t>(6, 1e9, 0),
+                                  SweepWithTimes<std::uint32_t>(6, 1e6, 0),
+                                  SweepWithTimes<float>(7, 1e3, 0),
+                                  SweepWithTimes<double>(8, 1e9, 1e9 * kStampS),
+                                  SweepWithTimes<double>(8, 1, kStampS),
+                                  SweepWithTimes<double>(8, 1e6, 5e9)}) {  // since the start
+    ASSERT_TRUE(cloud.has_time);
+    EXPECT_NEAR(cloud.points.front().time_s, 0.0, 1e-6);
+    EXPECT_NEAR(cloud.points.back().time_s, 0.1, 1e-6);
+  }
+  EXPECT_NEAR(SweepWithTimes<float>(7, 1, -0.1).points.front().time_s, -0.1, 1e-6);
+  EXPECT_FALSE(SweepWithTimes<double>(8, 1e14, 0).has_time);
+}
+
 TEST(PointCloudMessage, ReadsPaddedRows) {
   const PointCloud cloud = Cloud();
   pointcloud2_t message = ToMessage(cloud, kUtime, 5);

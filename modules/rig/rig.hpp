@@ -129,6 +129,8 @@ struct Rig {
   std::filesystem::path path;
   std::string sha256;  ///< Of the file's bytes, lower-case hex.
   std::string lcm_url = kDefaultLcmUrl;
+  /// Of .lcm files that define the types of other teams' recordings; empty: ours and bot_core's.
+  std::filesystem::path lcm_types;
   Channels channels;
   BoardSpec board;
   CameraModel camera;

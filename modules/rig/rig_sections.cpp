@@ -28,6 +28,7 @@ void ReadLcm(YamlSection* top, Rig* rig, std::string* channel_prefix) {
   const std::string problem = LcmUrlProblem(rig->lcm_url);
   if (!problem.empty()) section.AddError("url", problem);
   section.Read("channel_prefix", channel_prefix);
+  ReadPath("types", rig->path, &section, &rig->lcm_types);
   section.RefuseUnknownKeys();
 }
 

@@ -38,6 +38,7 @@ std::filesystem::path ImportBag(const Rig& rig,
   add("--image-channel", rig.channels.camera_image);
   add("--lidar-topic", bag.lidar_topic);
   add("--image-topic", bag.image_topic);
+  add("--lcm-types", rig.lcm_types.string());
   add("--times", NameOf(times));
   args.push_back("--");
   args.insert(args.end(), bag.paths.begin(), bag.paths.end());

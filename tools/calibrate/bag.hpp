@@ -9,7 +9,7 @@
 
 namespace voqcal {
 
-/// A recording of ROS, as tools/import_ros takes it.
+/// A recording of ROS, or an LCM log of packets or other types, as tools/import_ros takes it.
 struct BagInput {
   std::vector<std::string> paths;
   std::string lidar_topic;  ///< Empty: the only one.

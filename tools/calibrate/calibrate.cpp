@@ -141,7 +141,8 @@ int main(int argc, char** argv) {
       input->add_option("--bag",
                         args.bag.paths,
                         "A recording of ROS 1 or 2: .bag, .mcap, .db3, their folder; several "
-                        "files if it is split");
+                        "files if it is split. Or an LCM log of a lidar's packets or of types of "
+                        "your own");
   input->require_option(1);
   app.add_option("--lidar-topic", args.bag.lidar_topic, "Of --bag, unless there is only one")
       ->needs(bag);

@@ -63,7 +63,9 @@ void OfflineRun::FeedLog(const std::filesystem::path& log,
     std::string there;
     for (const std::string& channel : seen) there += (there.empty() ? "" : ", ") + channel;
     throw std::runtime_error(log.string() + ": has no channel " + needed + "; it has " +
-                             (there.empty() ? "no events" : there));
+                             (there.empty() ? "no events"
+                                            : there + " (a lidar's packets and types of your own "
+                                                      "are read by --bag)"));
   }
 }
 

@@ -1,12 +1,14 @@
-// import_ros: a recording of ROS (1 or 2) to an LCM log.
+// import_ros: a recording of ROS (1 or 2), or an LCM log of other types, to an LCM log.
 
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
+import { pathToFileURL } from "node:url";
 import { judgeClocks } from "./lib/clocks.mjs";
 import { UserError, runCommand } from "./lib/command.mjs";
 import { cameraTarget, cloudTarget, imageTarget, packetTarget } from "./lib/import_targets.mjs";
 import { LogWriter } from "./lib/lcm_log.mjs";
+import { LcmTypes } from "./lib/lcm_types.mjs";
 import { prepareOutput } from "./lib/output_file.mjs";
 import { DecoderFailed } from "./lib/packet_decoder.mjs";
 import { Progress } from "./lib/progress.mjs";
@@ -27,6 +29,7 @@ const command = {
     "image-topic": { type: "string" },
     "camera-info-topic": { type: "string" },
     rig: { type: "string" },
+    "lcm-types": { type: "string" },
     "lidar-model": { type: "string" },
     "lidar-calibration": { type: "string" },
     times: { type: "string", default: "auto" },
@@ -39,14 +42,17 @@ const command = {
   },
   usage: `usage: import_ros RECORDING... --out LOG [--force] [--lidar-topic NAME] [--image-topic NAME]
   RECORDING                    ROS 1: .bag; ROS 2: .mcap, .db3, or the folder that ros2 bag made; also cut off, without
-                               index, split (several files, or their folder), compressed by zstd
+                               index, split (several files, or their folder), compressed by zstd. Or an LCM log whose
+                               sensors' messages are packets (raw_t) or of other types than voqcal's
   --out LOG                    the LCM log to write; folders are made if missing
   --force                      overwrite the log if it is there
-  --lidar-topic NAME           of type PointCloud2, Livox' CustomMsg or a lidar's packets; may be left out if there is one only
+  --lidar-topic NAME           of type PointCloud2, Livox' CustomMsg or a lidar's packets; may be left out if there is one
+                               only, or one is called as the rig's channel
   --image-topic NAME           of type Image or CompressedImage; the same
   --camera-info-topic NAME     of type CameraInfo: goes into the log too
   --lidar-model NAME           whose packets they are (decode_lidar --help lists them), where they do not tell
   --lidar-calibration FILE     the vendor's file on this very unit, for packets; Ouster's is taken from the recording
+  --lcm-types FOLDER           .lcm files that define an LCM log's types, where they are not those of lcmtypes/
   --rig RIG                    the rig file, whose lidar_driver says the same and how to decode
   --times auto|stamps|log      a message's time: its stamp, or when it was recorded; auto (the default) takes stamps
                                unless they are of different clocks, and says so
@@ -118,7 +124,8 @@ async function* inFixedOrder(messages, names) {
 /** What becomes of each topic that is taken. */
 async function targetsOf(recording, flags) {
   const plan = new Map();
-  const choose = (kind, types) => chooseTopic(recording, `${kind}-topic`, flags[`${kind}-topic`], types);
+  const choose = (kind, types) =>
+    chooseTopic(recording, `${kind}-topic`, flags[`${kind}-topic`], types, flags[`${kind}-channel`]);
   const typeOf = (topic) => recording.topics.get(topic).type;
   const lidarTopic = choose("lidar", lidarTypes(recording, flags));
   const imageTopic = choose("image", IMAGES);
@@ -275,10 +282,18 @@ async function importRecording(recording, flags) {
   say(`${progress.rate()}\nwritten\n  ${flags.out}`);
 }
 
+function typesOf(folder) {
+  try {
+    return new LcmTypes(pathToFileURL(`${folder}/`));
+  } catch (error) {
+    throw new UserError(`--lcm-types ${folder}: ${error.message}`);
+  }
+}
+
 /** Runs `use` on the recording; anew without its index, should that lead to damage. */
-async function withRecording(paths, scratchParent, use) {
+async function withRecording(paths, scratchParent, lcmTypes, use) {
   for (const isScanning of [false, true]) {
-    const recording = await openRecording(paths, scratchParent, isScanning);
+    const recording = await openRecording(paths, scratchParent, isScanning, lcmTypes);
     try {
       await use(recording);
       return;
@@ -293,5 +308,6 @@ async function withRecording(paths, scratchParent, use) {
 await runCommand(command, async (flags, paths) => {
   const use = flags["print-camera"] ? printCamera : importRecording;
   const scratchParent = flags.out === undefined ? tmpdir() : dirname(flags.out);
-  await withRecording(paths, scratchParent, (recording) => use(recording, flags));
+  const lcmTypes = flags["lcm-types"] === undefined ? undefined : typesOf(flags["lcm-types"]);
+  await withRecording(paths, scratchParent, lcmTypes, (recording) => use(recording, flags));
 });

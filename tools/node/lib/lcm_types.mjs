@@ -5,17 +5,27 @@ import { readdirSync, readFileSync } from "node:fs";
 const SIZES = { int8_t: 1, int16_t: 2, int32_t: 4, int64_t: 8, byte: 1, boolean: 1, float: 4, double: 8 };
 const isPrimitive = (type) => type in SIZES || type === "string";
 
-/** Every type of a folder of .lcm files, by name. */
+/** Every type of a folder of .lcm files, by its name without the package. */
 export class LcmTypes {
   #structs = new Map();
   #fingerprints = new Map();
 
-  /** @param {URL} folder  of .lcm files, one struct each, without constants. */
+  /** @param {URL} folder  of .lcm files; those in folders of it count as well. */
   constructor(folder) {
-    for (const name of readdirSync(folder).filter((file) => file.endsWith(".lcm")).sort()) {
-      const struct = parseStruct(readFileSync(new URL(name, folder), "utf8"));
-      this.#structs.set(struct.name, struct);
+    for (const name of readdirSync(folder, { recursive: true }).filter((file) => file.endsWith(".lcm")).sort()) {
+      for (const struct of parseStructs(readFileSync(new URL(name, folder), "utf8"))) {
+        this.#structs.set(struct.name, struct);
+      }
     }
+  }
+
+  names() {
+    return [...this.#structs.keys()];
+  }
+
+  /** The type's members: {name, type, dimensions}. */
+  members(type) {
+    return this.#struct(type).members;
   }
 
   /** @returns {Buffer} `message` as lcm-gen's encode() writes it. int64_t takes a BigInt or a number. */
@@ -137,18 +147,22 @@ function joinedWhereShort(parts) {
   return joined;
 }
 
-function parseStruct(text) {
+function parseStructs(text) {
   const code = text.replace(/\/\/.*$/gm, "").replace(/\/\*[^]*?\*\//g, "");
-  const [, name, body] = /struct\s+(\w+)\s*\{([^}]*)\}/.exec(code);
+  return [...code.matchAll(/struct\s+(\w+)\s*\{([^}]*)\}/g)].map(([, name, body]) => ({ name, members: membersOf(body) }));
+}
+
+function membersOf(body) {
   const members = [];
   for (const declaration of body.split(";").map((part) => part.trim()).filter(Boolean)) {
-    const [, type, names] = /^(\w+)\s+(.*)$/s.exec(declaration);
-    for (const declarator of names.split(",")) {
+    if (/^const\b/.test(declaration)) continue; // not sent, nor in the fingerprint
+    const [, type, names] = /^(?:[\w.]+\.)?(\w+)\s+(.*)$/s.exec(declaration);
+    for (const declarator of names.split(/,(?![^[]*\])/)) {
       const dimensions = [...declarator.matchAll(/\[\s*(\w+)\s*\]/g)].map((match) => match[1]);
       members.push({ name: /\w+/.exec(declarator)[0], type, dimensions });
     }
   }
-  return { name, members };
+  return members;
 }
 
 const lengthOf = (dimension, message) =>

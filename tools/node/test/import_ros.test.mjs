@@ -194,7 +194,7 @@ test("a recording that is cut off: what is before the cut is read, or there is n
 test("files of another kind", () => {
   expectRefused([path("missing")], path("missing"), "no such file");
   mkdirSync(path("empty"));
-  expectRefused([path("empty")], path("empty"), "a folder without .bag, .mcap or .db3 files");
+  expectRefused([path("empty")], path("empty"), "a folder without .bag, .mcap, .db3 or .lcm files");
   writeFileSync(path("text"), "no recording");
   expectRefused([path("text")], "neither a ROS 1 bag nor a ROS 2 recording");
   writeFileSync(path("nothing.mcap"), "");

@@ -8,7 +8,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { readLog } from "../lib/lcm_log.mjs";
+import { LogWriter, readLog } from "../lib/lcm_log.mjs";
 import { voqcalTypes } from "../lib/lcm_types.mjs";
 import { programPath } from "../lib/packet_decoder.mjs";
 import { openRecording } from "../lib/recordings/open.mjs";
@@ -230,6 +230,18 @@ test("packets one by one and without times: the log's", options, async () => {
   const packets = vlp16Packets();
   await writeMcap(path("b.mcap"), withImages(singles(packets)));
   assert.deepEqual(imported(path("b.mcap")).sweeps, decoded(path("a.pcap"), "velodyne_vlp16"));
+});
+
+test("an LCM log of raw_t, as the lidar driver publishes packets: as decode_lidar", options, () => {
+  const log = new LogWriter(path("raw.lcm"));
+  const packets = vlp16Packets();
+  for (const { timeUs, bytes } of packets) {
+    log.write(timeUs, "LIDAR_PACKETS", types.encode("raw_t", { utime: timeUs, length: bytes.length, data: bytes }));
+  }
+  const eye = { utime: packets.at(-1).timeUs, width: 2, height: 1, row_stride: 2, pixelformat: 1497715271, size: 2, data: Buffer.alloc(2), nmetadata: 0, metadata: [] };
+  log.write(eye.utime, "CAMERA_IMAGE", types.encode("image_t", eye));
+  log.finish();
+  assert.deepEqual(imported(path("raw.lcm")).sweeps, decoded(path("a.pcap"), "velodyne_vlp16"));
 });
 
 test("stamps of another clock: log times, said; forbidden if asked", options, async () => {

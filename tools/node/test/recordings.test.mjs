@@ -8,6 +8,8 @@ import { join } from "node:path";
 import { after, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { UserError } from "../lib/command.mjs";
+import { LogWriter } from "../lib/lcm_log.mjs";
+import { voqcalTypes } from "../lib/lcm_types.mjs";
 import { DamagedIndex } from "../lib/recordings/merged.mjs";
 import { openRecording } from "../lib/recordings/open.mjs";
 import { writeBag, writeDb3, writeMcap } from "./recording_writers.mjs";
@@ -266,11 +268,27 @@ async function refusalOf(file) {
   return new Error("the scan looked at the index");
 }
 
+/** The same channels, their messages of our types. */
+function writeLcmLog(file) {
+  const types = voqcalTypes();
+  const log = new LogWriter(file);
+  for (const { topic, logTimeNs, message } of messages) {
+    const { width, height, data } = message;
+    const common = { utime: logTimeNs / 1000n, width, height, data };
+    const bytes = topic === "/camera"
+      ? types.encode("image_t", { ...common, row_stride: 4, pixelformat: 1497715271, size: 8, nmetadata: 0, metadata: [] })
+      : types.encode("pointcloud2_t", { ...message, ...common, seq: 0, frame_id: "lidar", nfields: 3, is_bigendian: 0, data_nbytes: 36, is_dense: 1 });
+    log.write(common.utime, topic, bytes);
+  }
+  log.finish();
+}
+
 const WRITERS = {
   "bags": (file) => writeBag(file, messages, { chunkBytes: 600 }),
   "bags without index": (file) => writeBag(file, messages, { hasIndex: false, chunkBytes: 600 }),
   "MCAP": (file) => writeMcap(file, messages, { chunkSize: 500 }),
   "MCAP without chunks": (file) => writeMcap(file, messages, { useChunks: false }),
+  "LCM logs": writeLcmLog,
 };
 for (const [kind, write] of Object.entries(WRITERS)) {
   test(`40 hostile variants of ${kind}: read, or refused in one line for people`, async () => {

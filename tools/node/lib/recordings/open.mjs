@@ -10,11 +10,12 @@ import { basename, dirname, join } from "node:path";
 import { UserError } from "../command.mjs";
 import { BAG_MAGIC, openIndexedBag, scanBag } from "./bag.mjs";
 import { SQLITE_MAGIC, openDb3 } from "./db3.mjs";
+import { LCM_MAGIC, openLcmLog } from "./lcm.mjs";
 import { MCAP_MAGIC, openIndexedMcap, scanMcap } from "./mcap.mjs";
 import { merged } from "./merged.mjs";
 import { ZSTD_MAGIC, unpackFile } from "./zstd.mjs";
 
-const ENDINGS = /\.(bag|bag\.active|mcap|db3)(\.zstd|\.zst)?$/;
+const ENDINGS = /\.(bag|bag\.active|mcap|db3|lcm)(\.zstd|\.zst)?$/;
 const OTHER_PACKERS = [
   { magic: Buffer.from([0x1f, 0x8b]), remedy: "gunzip" },
   { magic: Buffer.from("BZh"), remedy: "bunzip2" },
@@ -27,13 +28,14 @@ const OTHER_PACKERS = [
  *
  * @param scratchParent  the folder in which files that are compressed are unpacked, as long as they are open.
  * @param isScanning     reads record by record although there is an index: it led to damage.
+ * @param lcmTypes       of LCM logs, besides voqcal's own: LcmTypes or undefined.
  * @throws UserError naming file and cause.
  */
-export async function openRecording(paths, scratchParent, isScanning = false) {
+export async function openRecording(paths, scratchParent, isScanning = false, lcmTypes = undefined) {
   const scratch = new Scratch(scratchParent);
   const parts = [];
   try {
-    for (const path of paths.flatMap(filesOf)) parts.push(await openFile(path, scratch, isScanning));
+    for (const path of paths.flatMap(filesOf)) parts.push(await openFile(path, scratch, isScanning, lcmTypes));
   } catch (error) {
     for (const part of parts) await part.close();
     scratch.remove();
@@ -53,17 +55,17 @@ function filesOf(path) {
   const isUnpackedThere = (name) => names.includes(name.replace(/\.(zstd|zst)$/, "")) && /\.zstd?$/.test(name);
   const files = names.filter((name) => !isUnpackedThere(name));
   files.sort((a, b) => a.localeCompare(b, "en", { numeric: true }));
-  if (files.length === 0) throw new UserError(`${path}: is a folder without .bag, .mcap or .db3 files`);
+  if (files.length === 0) throw new UserError(`${path}: is a folder without .bag, .mcap, .db3 or .lcm files`);
   return files.map((name) => join(path, name));
 }
 
-async function openFile(path, scratch, isScanning) {
+async function openFile(path, scratch, isScanning, lcmTypes) {
   const magic = firstBytes(path);
   const startsWith = (wanted) => magic.subarray(0, wanted.length).equals(wanted);
   if (startsWith(ZSTD_MAGIC)) {
-    return { ...(await openFile(scratch.unpack(path), scratch, isScanning)), path };
+    return { ...(await openFile(scratch.unpack(path), scratch, isScanning, lcmTypes)), path };
   }
-  const part = await openKind(path, startsWith, isScanning);
+  const part = await openKind(path, startsWith, isScanning, lcmTypes);
   if (!part) throw new UserError(`${path}: ${whatElse(magic, startsWith)}`);
   if (part.topics.size === 0) {
     const why = (part.remarks ?? []).join("; ");
@@ -72,10 +74,11 @@ async function openFile(path, scratch, isScanning) {
   return { remarks: [], ...part, path };
 }
 
-async function openKind(path, startsWith, isScanning) {
+async function openKind(path, startsWith, isScanning, lcmTypes) {
   if (startsWith(BAG_MAGIC)) return (!isScanning && (await openIndexedBag(path))) || scanBag(path);
   if (startsWith(MCAP_MAGIC)) return (!isScanning && (await openIndexedMcap(path))) || scanMcap(path);
   if (startsWith(SQLITE_MAGIC)) return openDb3(path);
+  if (startsWith(LCM_MAGIC)) return openLcmLog(path, lcmTypes);
   return undefined;
 }
 
@@ -83,7 +86,7 @@ function whatElse(magic, startsWith) {
   if (magic.length === 0) return "is empty";
   const packer = OTHER_PACKERS.find((other) => startsWith(other.magic));
   if (packer) return `is compressed: unpack it first (${packer.remedy})`;
-  return "is neither a ROS 1 bag nor a ROS 2 recording (MCAP, sqlite3)";
+  return "is neither a ROS 1 bag nor a ROS 2 recording (MCAP, sqlite3) nor an LCM log";
 }
 
 function firstBytes(path) {

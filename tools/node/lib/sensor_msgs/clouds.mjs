@@ -14,6 +14,8 @@ const NAMES = {
   ring: ["ring", "channel", "line", "laser_id", "laserid", "beam", "scalar_ring"],
   time: ["time", "t", "timestamp", "time_stamp", "offset_time", "time_offset", "timeoffset", "scalar_time"],
 };
+/** Every name that a field of a point is looked for by. */
+export const FIELD_NAMES = new Set(Object.values(NAMES).flat());
 const READERS = ["Int8", "Uint8", "Int16", "Uint16", "Int32", "Uint32", "Float32", "Float64"]; // datatypes 1 to 8
 const NUM_BYTES = [1, 1, 2, 2, 4, 4, 4, 8];
 const FLOAT32 = 7;

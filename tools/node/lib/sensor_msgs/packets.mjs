@@ -2,6 +2,7 @@
 // without.
 
 import { UserError } from "../command.mjs";
+import { LCM_PACKETS } from "./from_lcm.mjs";
 import { nanoseconds } from "./messages.mjs";
 
 const HEADER = `std_msgs/Header header
@@ -37,7 +38,7 @@ export const PACKET_DEFINITIONS = {
   "rslidar_msgs/rslidarPacket": `builtin_interfaces/Time stamp\nuint8[1248] data${HEADER_PARTS}`,
   "rslidar_msg/RslidarPacket": `${HEADER}uint8 is_difop\nuint8 is_frame_begin\nuint8[] data${HEADER_PARTS}`,
 };
-export const PACKETS = Object.keys(PACKET_DEFINITIONS);
+export const PACKETS = [...Object.keys(PACKET_DEFINITIONS), LCM_PACKETS];
 
 /** Topics of the same types that have no points: motion, and the sensor's own word on its state. */
 export const isBesidePackets = (topic) => /imu|difop/i.test(topic);

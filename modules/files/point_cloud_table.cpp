@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include <pcl/io/lzf.h>
 #endif
 
+#include "files/foreign_file.hpp"
 #include "files/number_text.hpp"
 
 namespace voqcal {
@@ -344,10 +346,16 @@ CloudTable ReadBinary(const Header& header, Layout layout, const LineReader& lin
   return ReadBinary(header, layout, reinterpret_cast<const std::uint8_t*>(lines.rest()));
 }
 
+void RefuseForeign(const std::string& contents, const LineReader& lines) {
+  const std::string foreign = ForeignFileText(std::string_view(contents));
+  if (!foreign.empty()) lines.Fail(foreign);
+}
+
 }  // namespace
 
 CloudTable ReadPcd(const std::filesystem::path& path, const std::string& contents) {
   LineReader lines(path, contents);
+  RefuseForeign(contents, lines);
   const Header header = ReadPcdHeader(&lines);
   RequireReadable(header, lines);
   if (header.format == "ascii") return ReadText(header, &lines);
@@ -358,6 +366,7 @@ CloudTable ReadPcd(const std::filesystem::path& path, const std::string& content
 
 CloudTable ReadPly(const std::filesystem::path& path, const std::string& contents) {
   LineReader lines(path, contents);
+  RefuseForeign(contents, lines);
   const Header header = ReadPlyHeader(&lines);
   RequireReadable(header, lines);
   if (header.format == "ascii") return ReadText(header, &lines);

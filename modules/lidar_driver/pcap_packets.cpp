@@ -7,6 +7,7 @@
 #include <pcap/pcap.h>
 #include <spdlog/spdlog.h>
 
+#include "files/foreign_file.hpp"
 #include "lidar_driver/ip_fragments.hpp"
 #include "lidar_driver/udp_frame.hpp"
 
@@ -41,7 +42,10 @@ class PcapPackets : public PacketSource {
   PcapPackets(const std::filesystem::path& path, int port) : path_(path), port_(port) {
     std::array<char, PCAP_ERRBUF_SIZE> error{};
     pcap_.reset(pcap_open_offline(path.c_str(), error.data()));
-    if (!pcap_) throw std::runtime_error(path.string() + ": " + error.data());
+    if (!pcap_) {
+      const std::string foreign = ForeignFileText(path);
+      throw std::runtime_error(path.string() + ": " + (foreign.empty() ? error.data() : foreign));
+    }
     const auto link = LinkOf(pcap_datalink(pcap_.get()));
     if (!link) {
       throw std::runtime_error(path.string() + ": frames of link type " +

@@ -10,6 +10,8 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "files/foreign_file.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -150,6 +152,8 @@ std::optional<LogEvent> LogReader::Next() {
   const bool is_whole = extent.is_possible && extent.end <= num_bytes_;
   if (is_whole && IsSyncOrEnd(extent.end)) return Take(extent);
   if (offset_ == 0 && !extent.has_sync) {
+    const std::string foreign = ForeignFileText(path_);
+    if (!foreign.empty()) throw std::runtime_error(path_.string() + ": " + foreign);
     throw std::runtime_error(At(path_, 0) + "no LCM log event begins here (a foreign file)");
   }
   const std::optional<std::int64_t> next = FindEvent(offset_ + 1);

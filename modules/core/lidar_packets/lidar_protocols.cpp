@@ -204,6 +204,7 @@ std::string WrongLidarText(const LidarProtocol& protocol,
   const std::string bytes = std::to_string(most->first) + " bytes";
   std::string text = "no " + model + " packet among " + std::to_string(most->second) + " of " +
                      bytes + ": another sensor?";
+  if (protocol.packet_bytes.empty()) text += " Or is the calibration another unit's?";
   if (!senders.empty()) text += " " + bytes + " is what " + senders + " sends";
   return text;
 }

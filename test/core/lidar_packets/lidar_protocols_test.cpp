@@ -34,6 +34,9 @@ TEST(WrongLidarText, NamesWhoMayHaveSentIt) {
             "hesai_40p sends");
   EXPECT_EQ(WrongLidarText(*FindLidarProtocol("vlp16"), {{7, 2}}),
             "no VLP-16 packet among 2 of 7 bytes: another sensor?");
+  EXPECT_EQ(WrongLidarText(*FindLidarProtocol("ouster"), {{8448, 192}}),
+            "no OS-0, OS-1, OS-2 packet among 192 of 8448 bytes: another sensor? Or is the "
+            "calibration another unit's?");
 }
 
 }  // namespace

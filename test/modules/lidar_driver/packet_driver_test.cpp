@@ -155,6 +155,9 @@ TEST_F(PacketDriverTest, ACaptureThatIsCutOffGivesWhatIsThere) {
 TEST_F(PacketDriverTest, NamesACaptureThatIsNone) {
   rig_.lidar_sensor.pcap = folder_.Write("notes.pcap", "no capture at all, only words");
   EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }), HasSubstr("notes.pcap"));
+  rig_.lidar_sensor.pcap = folder_.Write("drive.pcap.gz", "\x1F\x8B\x08...");
+  EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }),
+              HasSubstr("drive.pcap.gz: is compressed: unpack it first (gunzip)"));
   rig_.lidar_sensor.pcap = folder_.path() / "missing.pcap";
   EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }), HasSubstr("missing.pcap"));
 }

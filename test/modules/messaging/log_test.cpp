@@ -168,6 +168,13 @@ TEST_F(LogFile, OfAnotherKindIsRefusedAndLeftAlone) {
     EXPECT_THROW(LogWriter{path_}, std::runtime_error);
     EXPECT_EQ(Contents(), contents);
   }
+  SetContents("\x1F\x8B\x08...");
+  try {
+    Read();
+    ADD_FAILURE() << "must be refused";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("gunzip"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(LogFile, IsReadAroundDamageInItsMiddle) {

@@ -155,7 +155,7 @@ std::string LidarSighting::Line() const {
   if (verdict != SightingVerdict::kMissed) {
     text << ", centre off by " << centre_error_m << " m, normal by " << normal_error_rad / kDeg
          << " deg, found at " << found.centre_m.transpose() << " m facing "
-         << found.normal.transpose();
+         << found.normal.transpose() << ", " << num_measured_sides << " sides measured";
   }
   if (num_frames > 1) text << " in " << num_frames << " sweeps";
   text << "; " << hits.num_points << " points, " << hits.num_rings << " rings; t_m "

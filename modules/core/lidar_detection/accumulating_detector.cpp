@@ -67,14 +67,16 @@ LidarBoardSighting AccumulatingDetector::Detect(const PointCloud& sweep_lidar_m,
   LidarBoardSighting best{DetectLidarBoard(sweep_lidar_m, board_, options_, background)};
   Keep(sweep_lidar_m, utime);
   if (!is_repeating_) TellWhetherRepeating();
-  if (best.boards || is_repeating_.value_or(true)) return best;
+  const int num_sides = best.boards ? NumMeasuredSides(best.boards->front()) : -1;
+  if (num_sides == 4 || is_repeating_.value_or(true)) return best;
   const std::size_t num = sweeps_.size();
   for (std::size_t first = 0; num - first >= 2; first += (num - first + 1) / 2) {
     const std::int64_t accumulated_us = utime - sweeps_[first].utime;
     auto found = DetectLidarBoard(Accumulated(first, num), board_, options_, background);
     if (!found) {
-      if (found.error().miss > best.boards.error().miss) best = {std::move(found), accumulated_us};
-    } else if (Rests(found->front(), first)) {
+      const bool is_closer = !best.boards && found.error().miss > best.boards.error().miss;
+      if (is_closer) best = {std::move(found), accumulated_us};
+    } else if (NumMeasuredSides(found->front()) > num_sides && Rests(found->front(), first)) {
       return {std::move(found), accumulated_us};
     }
   }

@@ -21,9 +21,9 @@ struct LidarBoardSighting {
   std::int64_t accumulated_us = 0;
 };
 
-/// Finds the board in a stream of sweeps: in the newest alone or, where that is too thin to tell,
-/// in those of the last `max_accumulation_s` put together; where these show none, in the newer half
-/// of them, and so on: the board may have come to rest only then.
+/// Finds the board in a stream of sweeps: in the newest alone or, where that is too thin to show a
+/// whole one, in those of the last `max_accumulation_s` put together; where these show none, in the
+/// newer half of them, and so on: the board may have come to rest only then.
 ///
 /// Only sweeps that look elsewhere each time fill each other's gaps. Of a direction's returns the
 /// newest counts: more of the same beam say nothing of where the board ends, and what all of them

@@ -73,7 +73,14 @@ class BadInput : public ::testing::Test {
     EXPECT_THAT(outcome.err, AllOf(StartsWith(program + ": "), line));
     EXPECT_THAT(outcome.err, MatchesRegex("(" + program + ": [^\n]*\n)+"));
     EXPECT_THAT(outcome.out, IsEmpty());
+    TakeAwayWhatWasSeen();
     EXPECT_EQ(test::NamesIn(folder_.path()), before);
+  }
+  /// Where frames gave no result, calibrate leaves a page of them, and nothing else.
+  void TakeAwayWhatWasSeen() const {
+    if (!std::filesystem::remove(Path("out/no_result.html"))) return;
+    std::error_code error;  // an earlier result may be in it
+    std::filesystem::remove(Path("out"), error);
   }
   template <typename Matcher>
   void ExpectCalibrateRefuses(const std::string& input,

@@ -230,7 +230,8 @@ class Session:
 def plain(text):
     """Without what changes from one look to the next: a fault's numbers, its cause, and since when, which only knows who has
     looked for so long."""
-    return re.sub("[0-9.]+", "#", re.sub(" nothing (yet|lately|for .*)$", " nothing", text.split(": ")[0]))
+    what = re.sub(" nothing (yet|lately|for .*)$", " nothing", text.split(": ")[0])
+    return re.sub("[0-9.]+", "#", re.sub(" (are being|were) lost$", " lost", what))
 
 
 def told_by(health):

@@ -117,8 +117,7 @@ std::string StatusPage::LineOf(const std::string& module, Time now) const {
   const ModuleHealth health = health_.HealthOf(module, now);
   const auto found = health_.heartbeats().heard().find(module);
   if (found == health_.heartbeats().heard().end()) {
-    const std::string how =
-        health == ModuleHealth::kEnded ? health_.HowEnded(module) : "not heard";
+    const std::string how = health == ModuleHealth::kEnded ? health_.HowEnded(module) : "not heard";
     return Format("%-22s %s\n", module.c_str(), how.c_str());
   }
   const HeardModule& heard = found->second;

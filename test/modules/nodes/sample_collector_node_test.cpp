@@ -314,7 +314,7 @@ TEST_F(SampleCollectorNodeTest, KeepsFramesWithoutABoardWhereFinishLeavesTooFewS
     sweep.seq = i;
     test::Send(bus_.get(), rig_.channels.lidar_points, sweep);
     const std::string miss = "joined to something: " + std::to_string(i) + " mm";
-    test::Send(bus_.get(), rig_.channels.lidar_board, LidarBoardMessage({}, miss, utime, i));
+    test::Send(bus_.get(), rig_.channels.lidar_board, LidarBoardMessage({}, miss, utime, 0, i));
     // Its image never came.
     test::Send(bus_.get(),
                rig_.channels.camera_board,

@@ -13,6 +13,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   voqcal::DashboardOptions options;
   options.max_image_width_px = 16;  // less than the corpus has
   voqcal::fuzz::Tolerate(
-      [&bytes, &options] { voqcal::ImageFrame(voqcal::EncodedToMessage(bytes, 0, 0), options); });
+      [&bytes, &options] { voqcal::ForPage(voqcal::EncodedToMessage(bytes, 0, 0), options); });
   return 0;
 }

@@ -229,10 +229,9 @@ int main(int argc, char** argv) {
                  args.starting_s,
                  "Wait so many seconds for all modules to run and both sensors to send; print only "
                  "what is wrong then, with status 1");
-  app.add_option(
-      "--take-for",
-      args.take_for,
-      "For tools/up: take the network for this session folder's modules, print \"taken\", "
-      "hold it until SIGTERM; status 1 and who it is if another session has it");
+  app.add_option("--take-for",
+                 args.take_for,
+                 "For up: take the network for this session folder's modules, print \"taken\", "
+                 "hold it until SIGTERM; status 1 and who it is if another session has it");
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::ShowStatus(args); });
 }

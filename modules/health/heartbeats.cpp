@@ -94,6 +94,7 @@ void Heartbeats::NoteNews(const module_status_t& status, const HeardModule* befo
     for (const channel_status_t& channel : status.channels) {
       if (channel.channel != stream.channel) continue;
       const std::int64_t num_new = channel.num_received - NumReceived(before, channel.channel);
+      stream.has_reader = true;
       // What the first heartbeat counts may have come long ago.
       stream.has_come_before = stream.has_come_before || channel.num_received > 0;
       const bool is_news = before != nullptr ? num_new > 0 : channel.rate_hz > 0;

@@ -43,6 +43,7 @@ struct Stream {
   std::string channel;
   std::string sender;            ///< The module that sends it.
   std::string name;              ///< "lidar", "camera"; of a detector its module's name.
+  bool has_reader = false;       ///< Of those heard; else nobody here can say whether it comes.
   bool has_come = false;         ///< While its readers were heard...
   bool has_come_before = false;  ///< ...or before: they had counted it.
   HeardModule::Time last_news{};

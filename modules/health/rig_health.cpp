@@ -188,7 +188,7 @@ void RigHealth::AddStreamFaults(Time now, std::vector<Fault>* faults) const {
     const bool is_sensor = i < 2;
     if (!is_sensor && FlowOf(streams[i - 2], now) != Flow::kFlows) continue;
     const bool may_come = IsStarting(stream.sender, now) || !IsExpected(stream.sender);
-    if (flow == Flow::kNothingYet && may_come) continue;
+    if (flow == Flow::kNothingYet && (may_come || !stream.has_reader)) continue;
     const std::string cause = CauseAt(stream.sender, now);
     const std::string who = is_sensor ? "The " + stream.name : stream.name;
     const std::string what = who + " has sent nothing " +

@@ -145,6 +145,17 @@ TEST_F(RigHealthTest, ASensorThatNeverSentIsAFaultOnceItsDriverHasStarted) {
 }
 
 // Who looks at a session only now knows what its readers have counted.
+// Drivers on a host of their own: whether their data arrive is for the other host to say.
+TEST_F(RigHealthTest, WithoutAReaderNothingIsSaidOfWhatArrives) {
+  const std::vector<std::string> drivers = {"lidar_driver", "camera_driver"};
+  RigHealth health{Channels{}, drivers, At(0)};
+  for (int i = 0; i < 20; ++i) {
+    Beat();
+    for (const std::string& driver : drivers) health.Take(Status(driver), At(now_s_));
+  }
+  EXPECT_THAT(health.Faults(At(now_s_)), IsEmpty());
+}
+
 TEST_F(RigHealthTest, ASensorThatFellSilentBeforeOneLookedIsNotCalledNew) {
   Beat(6);
   is_lidar_sending_ = false;

@@ -158,7 +158,7 @@ Search SearchPatches(const std::vector<Eigen::Vector3d>& points_m,
     if (IsPartOfAny(patches[i], search.sure)) continue;
     auto measured = MeasureBoard(patches[i], index, cloud_lidar_m, board, options);
     if (!measured) {
-      come_closer(std::move(measured.error()));
+      come_closer(measured.error());
     } else if (measured->doubt) {
       search.unsure.push_back(std::move(measured->board));
       come_closer(std::move(*measured->doubt));

@@ -29,6 +29,10 @@ ExtrinsicMonitorNode::ExtrinsicMonitorNode(const Rig& rig,
 }
 
 std::string ExtrinsicMonitorNode::State() const {
+  if (window_.IsWithoutPairs()) {
+    return "trouble: no image is near a sweep in time; check both clocks, or extrinsic_monitor: "
+           "max_apart_s";
+  }
   if (!newest_) return "waiting: the first stretch is not yet full";
   if (newest_->check.verdict != ToString(Agreement::kDisagrees)) return "running";
   return "trouble: the scene disagrees with " + extrinsic_.string() + ": " + newest_->check.reason +

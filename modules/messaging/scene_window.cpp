@@ -10,9 +10,10 @@
 namespace voqcal {
 namespace {
 
+constexpr std::size_t kNumKept = 5;  // of each sensor
+
 template <typename Message>
 void Keep(const Message& message, std::deque<Message>* kept) {
-  constexpr std::size_t kNumKept = 5;
   kept->push_back(message);
   if (kept->size() > kNumKept) kept->pop_front();
 }
@@ -30,6 +31,7 @@ SceneWindow::SceneWindow(const CameraModel& camera,
     : camera_(camera), view_(view), options_(options), on_unusable_(std::move(on_unusable)) {}
 
 void SceneWindow::Add(const pointcloud2_t& sweep) {
+  BeginAnewIfSetBack(sweep.utime);
   Keep(sweep, &sweeps_);
   Pair();
 }
@@ -43,9 +45,23 @@ bool SceneWindow::IsFull() const {
   return SecondsFrom(first_utime_, last_utime_) >= options_.window_s;
 }
 
+bool SceneWindow::IsWithoutPairs() const {
+  return !last_tried_utime_ && sweeps_.size() == kNumKept && images_.size() == kNumKept;
+}
+
 void SceneWindow::Clear() {
   views_.clear();
   first_utime_ = last_utime_ = 0;
+}
+
+// Sweeps of one sensor may come out of order by less than that.
+void SceneWindow::BeginAnewIfSetBack(std::int64_t sweep_utime) {
+  constexpr double kSetBackS = 1.0;
+  if (!last_tried_utime_ || SecondsFrom(sweep_utime, *last_tried_utime_) < kSetBackS) return;
+  Clear();
+  sweeps_.clear();
+  images_.clear();
+  last_tried_utime_.reset();
 }
 
 void SceneWindow::Pair() {

@@ -17,7 +17,8 @@
 namespace voqcal {
 
 /// The scenes of a stretch of time: sweeps with an image of about the same time, not all of a
-/// second's. Messages of the two sensors may come late by some of the other's.
+/// second's. Messages of the two sensors may come late by some of the other's. Where the sweeps'
+/// time is set back (a recording starts again) a new stretch begins.
 class SceneWindow {
  public:
   /// @param on_unusable  told of each pair that makes no scene, and why.
@@ -33,11 +34,14 @@ class SceneWindow {
   std::int64_t first_utime() const { return first_utime_; }  ///< Of its sweeps; 0 without any.
   std::int64_t last_utime() const { return last_utime_; }
   bool IsFull() const;  ///< It lasts window_s.
+  /// Both sensors come, and no image is near a sweep in time.
+  bool IsWithoutPairs() const;
 
   /// Begins a new stretch.
   void Clear();
 
  private:
+  void BeginAnewIfSetBack(std::int64_t sweep_utime);
   void Pair();
   bool TryPair(const pointcloud2_t& sweep, const image_t& image);
 
@@ -47,7 +51,7 @@ class SceneWindow {
   std::function<void(const std::string&)> on_unusable_;
   std::deque<pointcloud2_t> sweeps_;
   std::deque<image_t> images_;
-  std::optional<std::int64_t> last_tried_utime_;
+  std::optional<std::int64_t> last_tried_utime_;  // of the last pair's sweep
   std::int64_t first_utime_ = 0;
   std::int64_t last_utime_ = 0;
   std::vector<SceneView> views_;

@@ -126,6 +126,34 @@ TEST_F(ExtrinsicMonitorNodeTest, PairsByTimeOnceASecondAndCountsWhatIsNoScene) {
   EXPECT_FALSE(node.Step());                // one scene is no stretch
 }
 
+// A replay that starts again, or a clock that was set.
+TEST_F(ExtrinsicMonitorNodeTest, BeginsAnewWhereTimeIsSetBack) {
+  ExtrinsicMonitorNode node = MakeNode(0.0);
+  for (int i = 0; i < kNumScenes - 1; ++i) Send(i, (100 + i) * kSecondUs);
+  for (int i = 0; i < kNumScenes; ++i) {
+    EXPECT_FALSE(node.Step());
+    Send(i, (1 + i) * kSecondUs);
+  }
+  EXPECT_TRUE(node.Step());
+  test::HandleAll(&bus_);
+  ASSERT_THAT(checks_.messages, SizeIs(1));
+  EXPECT_EQ(checks_.messages[0].first_utime, kSecondUs);
+  EXPECT_EQ(checks_.messages[0].check.num_scenes, kNumScenes);
+}
+
+TEST_F(ExtrinsicMonitorNodeTest, SaysThatTheClocksAreApart) {
+  ExtrinsicMonitorNode node = MakeNode(0.0);
+  constexpr std::int64_t kHourUs = 3600 * kSecondUs;
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_THAT(node.State(), StartsWith("waiting"));
+    bus_.Publish(rig_.channels.lidar_points, ToMessage((*sweeps_)[0], (1 + i) * kSecondUs, i));
+    bus_.Publish(rig_.channels.camera_image,
+                 ToMessage((*images_)[0], (1 + i) * kSecondUs + kHourUs, i));
+    test::HandleAll(&bus_);
+  }
+  EXPECT_THAT(node.State(), AllOf(StartsWith("trouble: "), HasSubstr("clocks")));
+}
+
 TEST_F(ExtrinsicMonitorNodeTest, NeedsAnExtrinsic) {
   EXPECT_THROW(ExtrinsicMonitorNode(rig_, &bus_, folder_.path() / "none.yaml"), std::runtime_error);
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rig/rig_path.hpp"
+#include "rig/section_reading.hpp"
 
 namespace voqcal {
 namespace {

@@ -14,6 +14,7 @@ inline std::filesystem::path Beside(const std::filesystem::path& rig_path,
   return (rig_path.parent_path() / path).lexically_normal();
 }
 
+/// Such a path under `key`.
 inline void ReadPath(const std::string& key,
                      const std::filesystem::path& rig_path,
                      YamlSection* section,
@@ -21,6 +22,13 @@ inline void ReadPath(const std::string& key,
   std::string text;
   section->Read(key, &text);
   *path = Beside(rig_path, text);
+}
+
+/// Reads nothing more of a section: what is left over or does not fit together becomes an error.
+template <typename Options>
+void CheckAndClose(const Options& options, YamlSection* section) {
+  section->AddProblems(options.Problems());
+  section->RefuseUnknownKeys();
 }
 
 }  // namespace voqcal

@@ -8,50 +8,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/sampling/average_sightings.hpp"
+#include "core/sampling/picker_streams.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr std::int64_t kFrameUs = 100000;
-
-BoardSpec Board() {
-  BoardSpec board;
-  board.width_m = 0.6;
-  board.height_m = 0.8;
-  board.square_m = 0.1;
-  board.num_corners_x = 3;
-  board.num_corners_y = 4;
-  return board;
-}
-
-Eigen::Isometry3d PoseAt(double x_m) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-  T.translation() = Eigen::Vector3d(x_m, 0.2, 3.0);
-  return T;
-}
-
-LidarSighting Lidar(std::int64_t frame, double x_m) {
-  LidarBoard board;
-  board.pose = PoseFromTransform(PoseAt(x_m), Board());
-  board.pose.covariance = Matrix6d::Identity();
-  board.edge_lengths_m = Board().EdgeLengthsM();
-  board.plane_rms_m = 0.01;
-  return {frame * kFrameUs, board, {}};
-}
-
-CameraSighting Camera(std::int64_t frame, double x_m) {
-  CameraBoard board;
-  board.pose = PoseFromTransform(PoseAt(x_m), Board());
-  board.pose.covariance = Matrix6d::Identity();
-  board.corners_px = {{1000 * x_m, 10}, {1000 * x_m + 50, 20}};
-  return {frame * kFrameUs, board, {}};
-}
-
-void Append(const std::vector<PickerDecision>& from, std::vector<PickerDecision>* to) {
-  to->insert(to->end(), from.begin(), from.end());
-}
+using test::Append;
+using test::Board;
+using test::Camera;
+using test::kFrameUs;
+using test::Lidar;
+using test::PoseAt;
 
 std::vector<std::string> Outcomes(const std::vector<PickerDecision>& decisions) {
   std::vector<std::string> outcomes;
@@ -354,116 +321,6 @@ TEST(SamplePicker, NamesABadOption) {
   EXPECT_THAT(options.Problems(),
               testing::ElementsAre("num_still_frames must be at least 1, is 0"));
   EXPECT_THROW(SamplePicker(Board(), options), std::invalid_argument);
-}
-
-TEST(MeanBoard, TurnsFramesOfTheOtherHalfTurnBeforeAveraging) {
-  LidarBoard lidar = *Lidar(0, 0.5).board;
-  lidar.edge_lengths_m = {0.60, 0.80, 0.62, 0.82};
-  LidarBoard lidar_turned = lidar;
-  lidar_turned.pose = TurnedByHalf(lidar.pose);
-  lidar_turned.edge_lengths_m = {0.62, 0.82, 0.60, 0.80};
-  CameraBoard camera = *Camera(0, 0.5).board;
-  CameraBoard camera_turned = camera;
-  camera_turned.pose = TurnedByHalf(camera.pose);
-  std::reverse(camera_turned.corners_px.begin(), camera_turned.corners_px.end());
-  const LidarBoard lidar_mean = MeanLidarBoard({lidar, lidar_turned}, Board());
-  const CameraBoard camera_mean = MeanCameraBoard({camera, camera_turned}, Board());
-  for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(lidar_mean.edge_lengths_m[i], lidar.edge_lengths_m[i], 1e-12);
-    EXPECT_LT((lidar_mean.pose.corners_m[i] - lidar.pose.corners_m[i]).norm(), 1e-12);
-    EXPECT_LT((camera_mean.pose.corners_m[i] - camera.pose.corners_m[i]).norm(), 1e-12);
-  }
-  EXPECT_LT((camera_mean.corners_px[0] - camera.corners_px[0]).norm(), 1e-12);
-  EXPECT_THROW(MeanLidarBoard({}, Board()), std::invalid_argument);
-  EXPECT_THROW(MeanCameraBoard({}, Board()), std::invalid_argument);
-}
-
-LidarSighting Unsure(std::int64_t frame, double x_m) {
-  LidarSighting sighting = Lidar(frame, x_m);
-  sighting.unsure = {*sighting.board};
-  sighting.board.reset();
-  sighting.miss = "joined";
-  return sighting;
-}
-
-std::vector<UnsureStop> StopsOf(const std::vector<PickerDecision>& decisions) {
-  std::vector<UnsureStop> stops;
-  for (const PickerDecision& decision : decisions) {
-    if (decision.unsure) stops.push_back(*decision.unsure);
-  }
-  return stops;
-}
-
-TEST(SamplePicker, TellsOfAStopThatTheLidarWasUnsureOf) {
-  SamplePicker picker(Board(), {});
-  std::vector<PickerDecision> decisions;
-  for (int frame = 0; frame < 5; ++frame) {
-    Append(picker.Add(Unsure(frame, 0.5)), &decisions);
-    Append(picker.Add(Camera(frame, 0.5)), &decisions);
-  }
-  Append(picker.Flush(), &decisions);
-  const std::vector<UnsureStop> stops = StopsOf(decisions);
-  ASSERT_EQ(stops.size(), 1u);  // once, however long it lasts
-  ASSERT_EQ(stops[0].lidar.size(), 3u);
-  EXPECT_EQ(stops[0].lidar[0].unsure.size(), 1u);
-  EXPECT_EQ(stops[0].camera[2].utime, 2 * kFrameUs);
-}
-
-TEST(SamplePicker, TakesAStopOnceItsBoardIsFound) {
-  SamplePicker picker(Board(), {});
-  UnsureStop stop;
-  for (int frame = 0; frame < 3; ++frame) {
-    stop.lidar.push_back(Lidar(frame, 0.5));
-    stop.camera.push_back(Camera(frame, 0.5));
-  }
-  const PickerDecision first = picker.TakeStop(stop);
-  ASSERT_TRUE(first.accepted);
-  EXPECT_EQ(first.accepted->num_frames, 3);
-  EXPECT_EQ(picker.TakeStop(stop).reason, "pose is not new");
-}
-
-// The board rests at 0.5 m again, unseen by the lidar.
-std::size_t NumStopsAgain(std::int64_t first_frame, SamplePicker* picker) {
-  std::vector<PickerDecision> decisions;
-  for (std::int64_t frame = first_frame; frame < first_frame + 3; ++frame) {
-    Append(picker->Add(Unsure(frame, 0.5)), &decisions);
-    Append(picker->Add(Camera(frame, 0.5)), &decisions);
-  }
-  Append(picker->Flush(), &decisions);
-  return StopsOf(decisions).size();
-}
-
-TEST(SamplePicker, TellsOfAStopOnceThoughASampleIsDiscarded) {
-  SamplePicker picker(Board(), {});
-  EXPECT_EQ(NumStopsAgain(0, &picker), 1u);
-  picker.SetKnown({});  // another place's sample was discarded: the stop is still kept
-  EXPECT_EQ(NumStopsAgain(3, &picker), 0u);
-  picker.ForgetPoses();
-  EXPECT_EQ(NumStopsAgain(6, &picker), 1u);
-}
-
-TEST(SamplePicker, TellsOfAStopAgainOnceItsOwnSampleIsDiscarded) {
-  SamplePicker picker(Board(), {});
-  UnsureStop stop;
-  for (int frame = 0; frame < 3; ++frame) {
-    stop.lidar.push_back(Lidar(frame, 0.5));
-    stop.camera.push_back(Camera(frame, 0.5));
-  }
-  EXPECT_EQ(NumStopsAgain(0, &picker), 1u);
-  ASSERT_TRUE(picker.TakeStop(stop).accepted);
-  picker.SetKnown({});
-  EXPECT_EQ(NumStopsAgain(3, &picker), 1u);
-}
-
-TEST(SamplePicker, TellsOfNoStopWhileTheCameraSeesTheBoardMove) {
-  SamplePicker picker(Board(), {});
-  std::vector<PickerDecision> decisions;
-  for (int frame = 0; frame < 6; ++frame) {
-    Append(picker.Add(Unsure(frame, 0.1 * frame)), &decisions);
-    Append(picker.Add(Camera(frame, 0.1 * frame)), &decisions);
-  }
-  Append(picker.Flush(), &decisions);
-  EXPECT_TRUE(StopsOf(decisions).empty());
 }
 
 }  // namespace

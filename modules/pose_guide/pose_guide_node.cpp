@@ -2,17 +2,13 @@
 
 #include <vector>
 
+#include "core/least_samples.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_guidance.hpp"
 #include "messaging/convert_result.hpp"
 #include "messaging/made_from.hpp"
 
 namespace voqcal {
-namespace {
-
-constexpr std::int32_t kLeastForAnExtrinsic = 3;  // samples
-
-}  // namespace
 
 PoseGuideNode::PoseGuideNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
   bus_.Keep(rig_.channels.calib_samples, &samples_);
@@ -44,7 +40,7 @@ void PoseGuideNode::Republish() {
 }
 
 std::optional<PoseGuideNode::Basis> PoseGuideNode::BestBasis() const {
-  if (samples_->num_samples < kLeastForAnExtrinsic) return Basis::kSamples;
+  if (samples_->num_samples < kLeastSamples) return Basis::kSamples;
   if (!averaged_ || !IsMadeFrom(*samples_, *averaged_)) return std::nullopt;
   // Without a refiner the average is all there will be; one that was heard before will be again.
   if (!refined_) return Basis::kAverage;

@@ -7,6 +7,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "core/least_samples.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/encode.hpp"
 #include "messaging/session_misses.hpp"
@@ -24,9 +25,6 @@ constexpr std::size_t kMaxBufferBytes = 256U << 20U;
 
 /// Samples and stops that the lidar was unsure of, together, before any tells where another is.
 constexpr std::size_t kFirstLook = 5;
-
-/// Fewer give no result.
-constexpr std::size_t kMinSamples = 3;
 
 /// A reason in CALIB_EVENT.
 constexpr char kByCommand[] = "by command";
@@ -207,7 +205,7 @@ void SampleCollectorNode::SayFinished() {
 
 void SampleCollectorNode::SaveMisses() const try {
   std::filesystem::remove(session_folder_ / kMissesLogName);  // of an earlier finish
-  if (samples().size() < kMinSamples) misses_.Save(session_folder_, *this);
+  if (samples().size() < kLeastSamples) misses_.Save(session_folder_, *this);
 } catch (const std::exception& error) {  // the samples are what matters
   spdlog::warn("what was seen is not kept: {}", error.what());
 }

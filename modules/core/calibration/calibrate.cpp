@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "core/calibration/likely_cause.hpp"
+#include "core/least_samples.hpp"
 #include "core/selection/differences_from_others.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr std::size_t kMinSamples = 3;
 
 std::int64_t IdOf(const std::vector<BoardSample>& samples, int index) {
   return samples[static_cast<std::size_t>(index)].id;
@@ -52,7 +51,7 @@ ChosenSets ChooseSets(const ChosenSamples& chosen, const CalibrationTask& task) 
   std::vector<BoardSample> used;
   for (const BoardSample* sample : chosen.Used()) used.push_back(*sample);
   ChosenSets result;
-  if (used.size() < kMinSamples) {
+  if (used.size() < kLeastSamples) {
     result.problem =
         "fewer than three samples that agree with each other: " + std::to_string(used.size()) +
         " of " + std::to_string(chosen.samples.size());

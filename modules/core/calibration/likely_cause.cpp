@@ -7,6 +7,7 @@
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/least_samples.hpp"
 #include "core/selection/consistency.hpp"
 
 namespace voqcal {
@@ -17,10 +18,9 @@ namespace {
 // distances do not show.
 std::size_t NumAgreeing(const std::vector<BoardSample>& samples,
                         const ConsistencyOptions& options) {
-  constexpr std::size_t kLeast = 3;
   const std::vector<BoardSample> consistent =
       ConsistentSamples(samples, FindConsistent(samples, options));
-  if (consistent.size() < kLeast) return 0;
+  if (consistent.size() < kLeastSamples) return 0;
   std::vector<const BoardSample*> all;
   for (const BoardSample& sample : consistent) all.push_back(&sample);
   const Eigen::Isometry3d T_camera_lidar = AnalyticExtrinsic(all);

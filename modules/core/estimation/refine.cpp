@@ -13,13 +13,12 @@
 #include <ceres/solver.h>
 
 #include "core/estimation/refine_terms.hpp"
+#include "core/least_samples.hpp"
 #include "core/problems.hpp"
 #include "core/units.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr std::size_t kMinSamples = 3;
 
 // Every point that a term projects lies where the lens model is defined.
 bool IsVisible(const BoardPose& pose_lidar,
@@ -268,7 +267,7 @@ RefinedExtrinsic RefineExtrinsic(const std::vector<const BoardSample*>& samples,
   RequireUsable("RefineOptions", options.Problems());
   RefinedExtrinsic refined;
   refined.T_camera_lidar = T_camera_lidar_start;
-  if (samples.size() < kMinSamples) {
+  if (samples.size() < kLeastSamples) {
     refined.status = RefineStatus::kDegenerate;
     return refined;
   }

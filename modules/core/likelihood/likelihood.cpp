@@ -6,14 +6,13 @@
 
 #include <Eigen/LU>
 
+#include "core/least_samples.hpp"
 #include "core/likelihood/likelihood_search.hpp"
 #include "core/likelihood/likelihood_uncertainty.hpp"
 #include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
-
-constexpr std::size_t kMinSamples = 3;
 
 // Radians or metres.
 constexpr double kSettled = 1e-9;
@@ -119,7 +118,7 @@ LikelihoodExtrinsic RefinePoses(std::vector<LikelihoodPose> poses,
   LikelihoodExtrinsic refined;
   refined.T_camera_lidar = T_camera_lidar_start;
   refined.status = RefineStatus::kDegenerate;
-  if (poses.size() < kMinSamples) return refined;
+  if (poses.size() < kLeastSamples) return refined;
 
   LikelihoodSearch search(std::move(poses), T_camera_lidar_start, options);
   for (int round = 0; round < kNoiseRounds; ++round) {
@@ -155,7 +154,7 @@ LikelihoodExtrinsic RefinePosesNearby(std::vector<LikelihoodPose> poses,
                                       const LikelihoodOptions& options) {
   LikelihoodExtrinsic refined = nearby;
   refined.status = RefineStatus::kDegenerate;
-  if (poses.size() < kMinSamples) return refined;
+  if (poses.size() < kLeastSamples) return refined;
   LikelihoodSearch search(std::move(poses), nearby.T_camera_lidar, options);
   search.StartFrom(nearby.bias, nearby.lens, nearby.noise);
   refined.status = RefineStatus::kNotConverged;

@@ -33,6 +33,7 @@ class SidePlaces {
   std::optional<Place> At(const Eigen::Vector2d& q_m, std::size_t side) const {
     const bool is_beside = side % 2 == 1;
     const double across_m = is_beside ? q_m.x() : q_m.y();
+    // OutwardOf(side).dot(q_m): asked of each beam four times.
     const double outward_m = side == 1 || side == 2 ? across_m : -across_m;
     const double along = is_beside ? q_m.y() / half_m_.y() : q_m.x() / half_m_.x();
     if (std::abs(along) > 1.0) return {};

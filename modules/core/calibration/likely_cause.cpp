@@ -50,10 +50,10 @@ std::vector<BoardSample> WithoutPoints(std::vector<BoardSample> samples) {
 
 std::optional<Finding> LikelyCause(const std::vector<BoardSample>& samples,
                                    const CalibrationTask& task) {
-  constexpr std::size_t kLeastSamples = 5;  // of fewer, three agree by chance
-  constexpr double kLeastShare = 0.5;       // of the samples, that agree by the right answer...
-  constexpr double kLeastGain = 0.3;        // ...and that did not before
-  if (samples.size() < kLeastSamples) return {};
+  constexpr std::size_t kFewestTried = 5;  // of fewer, three agree by chance
+  constexpr double kLeastShare = 0.5;      // of the samples, that agree by the right answer...
+  constexpr double kLeastGain = 0.3;       // ...and that did not before
+  if (samples.size() < kFewestTried) return {};
   const GivenSession given{task.board, task.camera, WithoutPoints(samples)};
   const ConsistencyOptions& options = task.options.consistency;
   const std::size_t num_before = NumAgreeing(given.samples, options);

@@ -1,5 +1,7 @@
 #include "extrinsic_monitor/extrinsic_monitor_node.hpp"
 
+#include <stdexcept>
+
 #include <spdlog/spdlog.h>
 
 #include "core/scene/scene_check.hpp"
@@ -8,6 +10,17 @@
 #include "result/result_file.hpp"
 
 namespace voqcal {
+namespace {
+
+Eigen::Isometry3d ExtrinsicToWatch(const std::filesystem::path& extrinsic) try {
+  return ReadExtrinsic(extrinsic);
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error(error.what() +
+                           std::string("; calibrate first, or name a result by --session DIR or by "
+                                       "extrinsic_monitor: extrinsic in the rig file"));
+}
+
+}  // namespace
 
 ExtrinsicMonitorNode::ExtrinsicMonitorNode(const Rig& rig,
                                            Bus* bus,
@@ -15,7 +28,7 @@ ExtrinsicMonitorNode::ExtrinsicMonitorNode(const Rig& rig,
     : rig_(rig),
       bus_(*bus),
       extrinsic_(extrinsic),
-      T_camera_lidar_(ReadExtrinsic(extrinsic)),
+      T_camera_lidar_(ExtrinsicToWatch(extrinsic)),
       window_(rig_.camera,
               rig_.scene_check.view,
               rig_.extrinsic_monitor.window,

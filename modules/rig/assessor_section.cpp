@@ -18,9 +18,9 @@ void IgnoreRetired(std::initializer_list<const char*> keys, YamlSection* section
 void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
   YamlSection section = assessor->Section("scene_check");
   // Of an earlier check.
-  IgnoreRetired({"min_contrast", "max_sigma_deg", "tolerance_deg"}, &section);
+  IgnoreRetired({"min_contrast", "max_sigma_deg", "tolerance_deg", "min_gain_sigmas"}, &section);
   section.Read("min_edges", &options->refinement.min_edges);
-  section.Read("min_gain_sigmas", &options->refinement.min_gain_sigmas);
+  section.Read("min_gain_over_chance", &options->min_gain_over_chance);
   section.ReadDegrees("turn_prior_deg", &options->turn_prior_rad);
   section.Read("shift_prior_m", &options->shift_prior_m);
   section.ReadDegrees("max_turn_sigma_deg", &options->max_turn_sigma_rad);

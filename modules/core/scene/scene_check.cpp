@@ -23,10 +23,10 @@ Agreement Judge(double asked, double sigma, double max_sigma, double tolerance, 
   return sigma > max_sigma ? Agreement::kCannotTell : Agreement::kAgrees;
 }
 
-// Whether parts of the scene that were left out fit worse without these axes of the move.
-bool IsOwedTo(const SceneFit& fit, const std::vector<int>& axes, const SceneCheckOptions& options) {
-  const HeldOutGain gain = HeldOutGainOf(fit, axes, options.refinement.max_iterations);
-  return gain.mean > options.refinement.min_gain_sigmas * gain.sigma;
+// Axes that move the image alike: of such a pair the scene may know neither, but both together.
+const std::vector<int>& AlikeOf(int axis) {
+  static const std::vector<int> kAlike[] = {{0, 4}, {1, 3}, {2}, {1, 3}, {0, 4}, {5}};
+  return kAlike[axis];
 }
 
 // By what is asked alone: whether that is owed to the axis is asked of those that seem off.
@@ -50,18 +50,21 @@ void JudgeAll(const SceneFit& fit, const SceneCheckOptions& options, SceneCheck*
   const auto count = [&](Agreement agreement, int num_axes) {
     return std::count(check->axes.begin(), check->axes.begin() + num_axes, agreement);
   };
-  const bool seems_off = count(Agreement::kDisagrees, 6) > 0;
-  const bool is_off = seems_off && IsOwedTo(fit, {0, 1, 2, 3, 4, 5}, options);
-  // A turn and a shift may look alike: then all of them together is off, and no axis is named.
-  for (int i = 0; i < 6 && seems_off; ++i) {
-    Agreement& axis = check->axes[static_cast<std::size_t>(i)];
-    if (axis != Agreement::kDisagrees || (is_off && IsOwedTo(fit, {i}, options))) continue;
-    axis = Agreement::kCannotTell;
+  if (count(Agreement::kDisagrees, 6) == 0) {
+    if (count(Agreement::kAgrees, 3) >= kEnoughTurns) check->verdict = Agreement::kAgrees;
+    return;
   }
-  if (seems_off) {
-    check->verdict = is_off ? Agreement::kDisagrees : Agreement::kCannotTell;
-  } else if (count(Agreement::kAgrees, 3) >= kEnoughTurns) {
-    check->verdict = Agreement::kAgrees;
+  const double chance = ChanceFall(fit);
+  const bool is_owed_to_scene =
+      GainOf(fit, {0, 1, 2, 3, 4, 5}) > options.min_gain_over_chance * chance;
+  for (int i = 0; i < 6; ++i) {
+    Agreement& axis = check->axes[static_cast<std::size_t>(i)];
+    if (axis != Agreement::kDisagrees) continue;
+    if (is_owed_to_scene && GainOf(fit, AlikeOf(i)) > chance) {
+      check->verdict = Agreement::kDisagrees;
+    } else {
+      axis = Agreement::kCannotTell;
+    }
   }
 }
 
@@ -126,6 +129,7 @@ std::vector<std::string> SceneCheckOptions::Problems() const {
   problems.RequirePositive("turn_tolerance_rad", turn_tolerance_rad);
   problems.RequirePositive("shift_tolerance_m", shift_tolerance_m);
   problems.RequirePositive("num_sigmas", num_sigmas);
+  problems.RequirePositive("min_gain_over_chance", min_gain_over_chance);
   problems.Add(refinement.Problems());
   return problems.lines();
 }

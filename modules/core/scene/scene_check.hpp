@@ -22,12 +22,14 @@ struct SceneCheckOptions {
   // An axis known no better than this is left open...
   double max_turn_sigma_rad = 0.0017453293;  ///< 0.1 deg
   double max_shift_sigma_m = 0.015;
-  // ... and disagrees beyond these and beyond so many of its standard errors.
+  // ... and disagrees beyond these and beyond so many of its standard errors...
   double turn_tolerance_rad = 0.0026179939;  ///< 0.15 deg
   double shift_tolerance_m = 0.02;
   double num_sigmas = 3.0;
+  /// ... if the surprise falls by so many times what it falls by elsewhere for no reason.
+  double min_gain_over_chance = 1.5;
   SceneViewOptions view;
-  SceneRefinementOptions refinement;  ///< Its min_gain_sigmas is asked of what disagrees too.
+  SceneRefinementOptions refinement;
 
   /// One line for each broken constraint, with its value; empty if the options are usable.
   std::vector<std::string> Problems() const;

@@ -10,6 +10,7 @@
 #include "core/format.hpp"
 #include "core/parallel.hpp"
 #include "core/scene/scene_solver.hpp"
+#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
@@ -83,10 +84,12 @@ Matrix6d CovarianceOf(const SceneFit& fit, double shared_error_rad) {
   return covariance;
 }
 
-HeldOutGain HeldOutGainOf(const SceneFit& fit, const std::vector<int>& axes, int max_iterations) {
+HeldOutGain HeldOutGainOf(const SceneFit& fit, int max_iterations) {
   constexpr double kPinned = 1e12;  // information: 1 micron, 1 microradian
   SceneProblem without = fit.scene;
-  for (const int axis : axes) without.prior(axis, axis) += kPinned;
+  without.prior.diagonal().head<6>().array() += kPinned;
+  SceneVector back = fit.unknowns;
+  back.head<6>().setZero();
   std::array<double, kNumFolds> gains{};
   ParallelFor(kNumFolds, [&](std::size_t fold) {
     const Sectors held_out = (1U << fold) | (1U << (fold + kNumFolds));
@@ -95,8 +98,6 @@ HeldOutGain HeldOutGainOf(const SceneFit& fit, const std::vector<int>& axes, int
       MinimiseAt(scene, scene.Finest(), others, fit.trust.scale, max_iterations, &start);
       return start;
     };
-    SceneVector back = fit.unknowns;
-    for (const int axis : axes) back[axis] = 0;
     gains[fold] = MeanSurprise(fit.scene, held_out, fitted(without, back)) -
                   MeanSurprise(fit.scene, held_out, fitted(fit.scene, fit.unknowns));
   });
@@ -108,6 +109,32 @@ HeldOutGain HeldOutGainOf(const SceneFit& fit, const std::vector<int>& axes, int
   }
   gain.sigma = std::sqrt(variance / kNumFolds);
   return gain;
+}
+
+double GainOf(const SceneFit& fit, const std::vector<int>& axes) {
+  SceneVector unknowns = fit.unknowns;
+  for (const int axis : axes) unknowns[axis] = 0;
+  return MeanSurprise(fit.scene, kAllSectors, unknowns) -
+         MeanSurprise(fit.scene, kAllSectors, fit.unknowns);
+}
+
+double ChanceFall(const SceneFit& fit) {
+  constexpr double kStepRad = 0.1 * kRadPerDeg;
+  constexpr int kNumSteps = 30;
+  constexpr std::size_t kNumWays = 6;  // about three axes, both ways
+  std::array<double, kNumWays> falls{};
+  ParallelFor(kNumWays, [&](std::size_t way) {
+    const double step_rad = way % 2 == 0 ? kStepRad : -kStepRad;
+    double highest = 0;
+    for (int i = 0; i <= kNumSteps; ++i) {
+      SceneVector turned = fit.unknowns;
+      turned[static_cast<int>(way) / 2] += i * step_rad;
+      const double surprise = MeanSurprise(fit.scene, kAllSectors, turned);
+      highest = std::max(highest, surprise);
+      falls[way] = std::max(falls[way], highest - surprise);
+    }
+  });
+  return *std::max_element(falls.begin(), falls.end());
 }
 
 std::string TooFewEdges(int num_scenes, int num_edges) {

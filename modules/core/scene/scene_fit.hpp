@@ -38,10 +38,17 @@ struct HeldOutGain {
   double sigma = 0;
 };
 
-/// What some axes of the fit (0 to 5) are owed to: each sixth of the scene by what the others give,
-/// against what they give with these axes left where they were. Between scan lines lie plateaus,
-/// on which a fit strays far for nothing.
-HeldOutGain HeldOutGainOf(const SceneFit& fit, const std::vector<int>& axes, int max_iterations);
+/// Each sixth of the scene by what the others give, against where the extrinsic was.
+HeldOutGain HeldOutGainOf(const SceneFit& fit, int max_iterations);
+
+/// How much less the surprise is than with some axes (0 to 5) put back to where they were.
+double GainOf(const SceneFit& fit, const std::vector<int>& axes);
+
+/// By how much the surprise falls where it has no reason to: the largest fall on the way outward
+/// from the fit, turned about each axis, up to 3 deg. Where scan lines that are far apart cross
+/// edges that lie along them, such hollows are as deep as what a real turn gains, and all parts of
+/// the scene share them: neither its curvature nor their scatter shows that.
+double ChanceFall(const SceneFit& fit);
 
 /// Why scenes tell nothing, in words.
 std::string TooFewEdges(int num_scenes, int num_edges);

@@ -67,7 +67,7 @@ SceneRefinement RefineByScene(const std::vector<SceneView>& views,
   refined.move = unknowns.head<6>();
   refined.move_covariance = CovarianceOf(fit, options.shared_error_rad);
   refined.move_chi2 = refined.move.dot(scene.prior.topLeftCorner<6, 6>() * refined.move);
-  const HeldOutGain gain = HeldOutGainOf(fit, {0, 1, 2, 3, 4, 5}, options.max_iterations);
+  const HeldOutGain gain = HeldOutGainOf(fit, options.max_iterations);
   refined.held_out_gain = gain.mean;
   refined.held_out_gain_sigma = gain.sigma;
   refined.is_used = refined.held_out_gain > options.min_gain_sigmas * refined.held_out_gain_sigma;

@@ -75,6 +75,23 @@ TEST_F(CheckSceneTest, DisagreesWithATurnAndSaysByHowMuch) {
   EXPECT_GT(check.asked_score, check.score + 0.1);
   EXPECT_NEAR(check.asked[1], -0.8 * kDeg, 0.2 * kDeg);
   EXPECT_THAT(check.reason, HasSubstr("fit best when turned by"));
+  // The turned axis is named, and not the one that the room's lines leave open.
+  EXPECT_EQ(check.axes[1], Agreement::kDisagrees) << check.reason;
+  EXPECT_EQ(check.axes[0], Agreement::kCannotTell) << check.reason;
+}
+
+// Between scan lines that are 2 deg apart the surprise has hollows that all parts of a scene share:
+// curvature and scatter are sure of them. What is asked must gain more than such hollows do.
+TEST_F(CheckSceneTest, IsNotFooledByHollowsBetweenScanLines) {
+  int num_sure = 0;
+  for (std::size_t left_out = 0; left_out < views_->size(); ++left_out) {
+    std::vector<SceneView> views = *views_;
+    views.erase(views.begin() + static_cast<std::ptrdiff_t>(left_out));
+    const SceneCheck check = CheckScene(views, Camera(), test::TestExtrinsic(), {});
+    EXPECT_NE(check.verdict, Agreement::kDisagrees) << "without " << left_out << check.reason;
+    num_sure += std::abs(check.asked[0]) > 3 * check.sigma[0] ? 1 : 0;
+  }
+  EXPECT_GE(num_sure, 3);  // or this room has no such hollows, and the test shows nothing
 }
 
 // An axis known no better than asked for is left open, and named.

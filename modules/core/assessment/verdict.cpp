@@ -19,7 +19,7 @@ struct Limits {
 constexpr Limits kHeldOutMm{5.0, 12.0};    // the method's paper reports means of 10 to 12 mm
 constexpr Limits kOverfitRatio{1.5, 3.0};  // 1.1 is common with 30 poses
 constexpr Limits kSigmaDeg{0.05, 0.2};     // 0.05 degrees is 9 mm at 10 m
-constexpr Limits kSigmaMm{3.0, 5.0};       // twice as much is 10 mm
+constexpr Limits kSigmaMm{3.0, 5.0};       // 95 in 100 are within twice as much: 10 mm
 constexpr Limits kNormalDeg{0.7, 2.0};     // a clean simulated VLP-16 shows about 0.6
 constexpr Limits kNumPoses{15, 6};
 constexpr Limits kNumCells{5, 2};  // of the 9 parts of the image
@@ -109,7 +109,7 @@ void AddCertainty(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   AddNumber("Certainty of the translation",
             evidence.sigma_mm,
             kSigmaMm,
-            "Largest standard deviation " + Number(evidence.sigma_mm, 1, "mm") + ".",
+            "Standard deviation " + Number(evidence.sigma_mm, 1, "mm") + ", of all three axes.",
             "Take more samples, near ones too, tilted to all sides.",
             checks);
 }

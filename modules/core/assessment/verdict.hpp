@@ -14,7 +14,7 @@ struct Evidence {
   double in_sample_mm = std::numeric_limits<double>::quiet_NaN();  ///< The same of the fit's poses.
   double normal_deg = std::numeric_limits<double>::quiet_NaN();    ///< Mean, held out.
   double sigma_deg = std::numeric_limits<double>::quiet_NaN();     ///< Of the worst axis.
-  double sigma_mm = std::numeric_limits<double>::quiet_NaN();
+  double sigma_mm = std::numeric_limits<double>::quiet_NaN();      ///< Of the translation's length.
   int num_used = 0;
   int num_samples = 0;  ///< With those that were left out.
   int num_cells = 0;    ///< Of the 9 parts of the image, how many have a used pose.

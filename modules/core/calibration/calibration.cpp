@@ -12,7 +12,7 @@ Evidence EvidenceOf(const Calibration& calibration) {
   evidence.in_sample_mm = calibration.in_sample.centre_mm.mean;
   evidence.normal_deg = calibration.held_out.normal_deg.mean;
   evidence.sigma_deg = kDegPerRad * sigma.head<3>().maxCoeff();
-  evidence.sigma_mm = kMmPerM * sigma.tail<3>().maxCoeff();
+  evidence.sigma_mm = kMmPerM * sigma.tail<3>().norm();
   evidence.num_used = static_cast<int>(calibration.used_ids.size());
   evidence.num_samples =
       static_cast<int>(calibration.used_ids.size() + calibration.rejected.size());

@@ -42,11 +42,11 @@ next_pose_t ToMessage(const NextPose& next,
   next_pose_t message{};
   message.problem = next.problem;
   message.advice = next.advice;
-  message.unit = ToString(asked.tolerance.unit);
-  message.tolerance = asked.tolerance.tolerance;
-  message.min_range_m = asked.tolerance.min_range_m;
-  message.max_range_m = asked.tolerance.max_range_m;
-  message.min_samples = asked.min_samples;
+  message.unit = ToString(asked.enough.tolerance.unit);
+  message.tolerance = asked.enough.tolerance.tolerance;
+  message.min_range_m = asked.enough.tolerance.min_range_m;
+  message.max_range_m = asked.enough.tolerance.max_range_m;
+  message.min_samples = asked.enough.min_samples;
   message.worst_error = next.worst.error;
   message.is_enough = next.is_enough ? 1 : 0;
   message.worst_range_m = next.worst.range_m;

@@ -6,7 +6,7 @@ namespace voqcal {
 
 void ReadPoseGuide(YamlSection* top, GuidanceOptions* options) {
   YamlSection section = top->Section("pose_guide");
-  ErrorTolerance* tolerance = &options->tolerance;
+  ErrorTolerance* tolerance = &options->enough.tolerance;
   std::string unit = ToString(tolerance->unit);
   section.Read("tolerance", &tolerance->tolerance);
   section.Read("unit", &unit);
@@ -14,9 +14,8 @@ void ReadPoseGuide(YamlSection* top, GuidanceOptions* options) {
   tolerance->unit = unit == "px" ? ErrorUnit::kPixels : ErrorUnit::kMillimetres;
   section.Read("min_range_m", &tolerance->min_range_m);
   section.Read("max_range_m", &tolerance->max_range_m);
-  section.AddProblems(tolerance->Problems());
-  section.Read("min_samples", &options->min_samples);
-  if (options->min_samples < 0) section.AddError("min_samples", "must not be negative");
+  section.Read("min_samples", &options->enough.min_samples);
+  section.AddProblems(options->enough.Problems());
   YamlSection hold = section.Section("hold");
   hold.Read("min_distance_m", &options->limits.min_distance_m);
   hold.Read("max_distance_m", &options->limits.max_distance_m);

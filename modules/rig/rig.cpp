@@ -53,7 +53,8 @@ CalibrationTask Rig::Task() const {
            average,
            extrinsic_refiner,
            scene_check,
-           diagnosis}};
+           diagnosis,
+           pose_guide.enough}};
 }
 
 Rig LoadRig(const std::filesystem::path& path) {

@@ -35,7 +35,7 @@ class Session {
         rig_(rig),
         guidance_(guidance),
         T_truth_(options.simulation.T_camera_lidar),
-        scene_(rig.camera, T_truth_, guidance.tolerance),
+        scene_(rig.camera, T_truth_, guidance.enough.tolerance),
         lidar_(options.simulation, rig.board, EmptyHall()),
         reach_(Reach(guidance)),
         random_(options.seed) {}

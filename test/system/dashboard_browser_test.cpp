@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/assessment/worst_error.hpp"
 #include "core/geometry/rigid.hpp"
-#include "core/guidance/worst_error.hpp"
 #include "core/simulation/simulation.hpp"
 #include "files/atomic_file.hpp"
 #include "images/jpeg.hpp"
@@ -83,7 +83,8 @@ TEST_F(DashboardInBrowser, GuidesASessionFromStartToEnough) {
 
   const Rig rig = LoadRig(rig_);
   const std::string result = session_ + "/extrinsic.yaml";
-  const ErrorScene scene(rig.camera, rig.simulation.T_camera_lidar, rig.pose_guide.tolerance);
+  const ErrorScene scene(
+      rig.camera, rig.simulation.T_camera_lidar, rig.pose_guide.enough.tolerance);
   const Vector6d error = DifferenceLeft(rig.simulation.T_camera_lidar, ReadExtrinsic(result));
   // What was promised is an RMS: one session's error may well be larger.
   EXPECT_LT(scene.Worst(error * error.transpose()).error, 3.0 * kToleranceMm);

@@ -9,10 +9,10 @@
 
 #include <Eigen/Geometry>
 
+#include "core/assessment/worst_error.hpp"
 #include "core/guidance/expected_sample.hpp"
 #include "core/guidance/extrinsic_information.hpp"
 #include "core/guidance/next_pose.hpp"
-#include "core/guidance/worst_error.hpp"
 
 namespace voqcal {
 namespace {

@@ -60,7 +60,7 @@ class Bound {
         rig_{rig.board, rig.camera, rig.extrinsic_refiner.likelihood},
         guidance_(rig.pose_guide),
         T_truth_(rig.simulation.T_camera_lidar),
-        scene_(rig.camera, T_truth_, guidance_.tolerance),
+        scene_(rig.camera, T_truth_, guidance_.enough.tolerance),
         nothing_({}, {T_truth_, {}, {}}, rig_.likelihood, guidance_.sensors.num_rows),
         random_(args.seed) {
     guidance_.limits.min_distance_m = rig.simulation.min_distance_m;
@@ -71,7 +71,7 @@ class Bound {
     const std::vector<Eigen::MatrixXd> asked = Asked();
     const std::vector<Eigen::MatrixXd> at_random = AtRandom(M_PI / 4);
     std::printf("worst error by information alone, %s; %zu places\n",
-                ToString(guidance_.tolerance.unit).c_str(),
+                ToString(guidance_.enough.tolerance.unit).c_str(),
                 asked.size());
     std::puts("poses   no choice is below   best design  one at a time  at random");
     Curves curves;

@@ -124,7 +124,7 @@ void Print(const GuidanceArgs& args) {
                              Run(args, rig, guidance, Poses::kRandom),
                              Run(args, rig, guidance, Poses::kRandomDiamonds)};
   std::printf("worst error of the scene, %s, median of %d runs\n",
-              ToString(guidance.tolerance.unit).c_str(),
+              ToString(guidance.enough.tolerance.unit).c_str(),
               args.num_runs);
   PrintCurves(kinds);
   PrintHolds(kinds);

@@ -21,7 +21,7 @@ constexpr Limits kOverfitRatio{1.5, 3.0};  // 1.1 is common with 30 poses
 constexpr Limits kSigmaDeg{0.05, 0.2};     // 0.05 degrees is 9 mm at 10 m
 constexpr Limits kSigmaMm{3.0, 5.0};       // 95 in 100 are within twice as much: 10 mm
 constexpr Limits kNormalDeg{0.7, 2.0};     // a clean simulated VLP-16 shows about 0.6
-constexpr Limits kNumPoses{15, 6};
+constexpr int kFewestPoses = 6;
 constexpr Limits kNumCells{5, 2};  // of the 9 parts of the image
 constexpr Limits kLeftOutShare{0.15, 0.4};
 
@@ -117,9 +117,11 @@ void AddCertainty(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
 void AddPoses(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   const int num_left_out = evidence.num_samples - evidence.num_used;
   Add("Number of poses",
-      GradeOf(evidence.num_used, kNumPoses),
-      std::to_string(evidence.num_used) + " poses were used.",
-      "Take more: 20 to 40 are recommended.",
+      evidence.num_used < kFewestPoses ? Grade::kBad
+      : evidence.is_enough             ? Grade::kGood
+                                       : Grade::kLook,
+      std::to_string(evidence.num_used) + " poses were used. " + evidence.enough_words,
+      "Take more: near and far, to all sides, tilted each way.",
       checks);
   Add("Parts of the image",
       GradeOf(evidence.num_cells, kNumCells),

@@ -16,6 +16,8 @@ struct Evidence {
   double sigma_deg = std::numeric_limits<double>::quiet_NaN();     ///< Of the worst axis.
   double sigma_mm = std::numeric_limits<double>::quiet_NaN();      ///< Of the translation's length.
   int num_used = 0;
+  bool is_enough = false;  ///< Enough's, as the guide says it.
+  std::string enough_words;
   int num_samples = 0;  ///< With those that were left out.
   int num_cells = 0;    ///< Of the 9 parts of the image, how many have a used pose.
   Agreement scene = Agreement::kCannotTell;

@@ -14,6 +14,12 @@ AveragedPart PartOf(const AveragedExtrinsic& average) {
   return part;
 }
 
+Enough EnoughOf(std::size_t num_used, const Calibration& calibration, const CalibrationTask& task) {
+  const EnoughOptions& options = task.options.enough;
+  const ErrorScene scene(task.camera, calibration.T_camera_lidar, options.tolerance);
+  return JudgeEnough(static_cast<int>(num_used), scene.Worst(calibration.covariance), options);
+}
+
 /// Lens against lens: another method's scores would be compared with the likelihood's.
 LensCorrection LensCorrectionOf(const std::vector<const BoardSample*>& used,
                                 const Calibration& calibration,
@@ -67,6 +73,7 @@ Calibration Assess(const ChosenSamples& chosen,
   result.held_out_by_cell = BinByImageCell(used, result.held_out, camera);
   result.held_out_by_range = BinByRange(used, result.held_out);
   result.predicted = PredictErrors(result.T_camera_lidar, result.covariance, camera);
+  result.enough = EnoughOf(used.size(), result, task);
   result.scene_check = CheckScene(scene_views ? scene_views(used) : std::vector<SceneView>(),
                                   camera,
                                   result.T_camera_lidar,

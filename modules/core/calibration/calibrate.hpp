@@ -6,6 +6,7 @@
 
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/diagnosis.hpp"
+#include "core/assessment/enough.hpp"
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/calibration/calibration.hpp"
@@ -28,6 +29,7 @@ struct CalibrationOptions {
   RefinerOptions refinement;
   SceneCheckOptions scene_check;
   DiagnosisOptions diagnosis;
+  EnoughOptions enough;
 };
 
 /// What the rig has, and how it is calibrated.

@@ -14,6 +14,8 @@ Evidence EvidenceOf(const Calibration& calibration) {
   evidence.sigma_deg = kDegPerRad * sigma.head<3>().maxCoeff();
   evidence.sigma_mm = kMmPerM * sigma.tail<3>().norm();
   evidence.num_used = static_cast<int>(calibration.used_ids.size());
+  evidence.is_enough = calibration.enough.is_enough;
+  evidence.enough_words = calibration.enough.words;
   evidence.num_samples =
       static_cast<int>(calibration.used_ids.size() + calibration.rejected.size());
   evidence.num_cells = static_cast<int>(calibration.held_out_by_cell.size());

@@ -9,6 +9,7 @@
 
 #include "core/assessment/best_extrinsic.hpp"
 #include "core/assessment/diagnosis.hpp"
+#include "core/assessment/enough.hpp"
 #include "core/assessment/lens_correction.hpp"
 #include "core/assessment/predicted_error.hpp"
 #include "core/assessment/score_bins.hpp"
@@ -57,6 +58,7 @@ struct Calibration {
   std::vector<ScoreBin> held_out_by_cell;   ///< Of the image.
   std::vector<ScoreBin> held_out_by_range;  ///< From the camera.
   std::vector<PredictedError> predicted;    ///< Out to 50 m.
+  Enough enough;
   SceneCheck scene_check;
   Diagnosis diagnosis;
   /// For who can correct the intrinsics too; nothing else of the result uses it.

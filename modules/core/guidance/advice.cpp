@@ -98,13 +98,4 @@ std::string HoldWords(const Eigen::Isometry3d& T_camera_board,
   return where + " Hold it " + TurnWords(placement) + ", " + TiltWords(placement) + ".";
 }
 
-std::string EnoughWords(const WorstError& worst, const ErrorTolerance& tolerance) {
-  std::ostringstream text;
-  text.precision(2);
-  const std::string unit = ToString(tolerance.unit);
-  text << "Enough: " << worst.error << " " << unit << " at worst, at " << worst.range_m << " m; "
-       << tolerance.tolerance << " " << unit << " are asked.";
-  return text.str();
-}
-
 }  // namespace voqcal

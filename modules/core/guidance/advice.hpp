@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 
 #include "core/camera/camera_model.hpp"
-#include "core/guidance/worst_error.hpp"
 
 namespace voqcal {
 
@@ -20,8 +19,5 @@ namespace voqcal {
 std::string HoldWords(const Eigen::Isometry3d& T_camera_board,
                       const std::optional<Eigen::Vector3d>& last_centre_camera_m,
                       const CameraModel& camera);
-
-/// "Enough: 4.2 mm at worst, at 5 m; 5 mm are asked."
-std::string EnoughWords(const WorstError& worst, const ErrorTolerance& tolerance);
 
 }  // namespace voqcal

@@ -117,7 +117,7 @@ class PoseSearch {
         options_(options),
         T_camera_lidar_(belief.T_camera_lidar),
         up_camera_(UpOf(belief.T_camera_lidar)),
-        scene_(rig.camera, belief.T_camera_lidar, options.tolerance),
+        scene_(rig.camera, belief.T_camera_lidar, options.enough.tolerance),
         information_(
             state.samples, belief, rig.likelihood, NumRings(state.samples, options.sensors)),
         least_covariance_(information_.Covariance()),
@@ -243,10 +243,9 @@ class PoseSearch {
 
 std::vector<std::string> GuidanceOptions::Problems() const {
   ProblemList problems;
-  problems.Add(tolerance.Problems());
+  problems.Add(enough.Problems());
   problems.Add(sensors.Problems());
   problems.Add(limits.Problems());
-  problems.Require(min_samples >= 0, "min_samples must not be negative", min_samples);
   return problems.lines();
 }
 
@@ -259,9 +258,10 @@ NextPose ProposeNextPose(const GuidanceState& state,
   NextPose next;
   next.worst = search.WorstNow();
   if (state.samples.empty()) next.worst.error = std::numeric_limits<double>::infinity();
-  next.is_enough = static_cast<int>(state.samples.size()) >= options.min_samples &&
-                   state.covariance && next.worst.error <= options.tolerance.tolerance;
-  if (next.is_enough) next.advice = EnoughWords(next.worst, options.tolerance);
+  const Enough enough =
+      JudgeEnough(static_cast<int>(state.samples.size()), next.worst, options.enough);
+  next.is_enough = enough.is_enough && state.covariance;
+  if (next.is_enough) next.advice = enough.words;
   const std::vector<Candidate> starts = search.Grid();
   const Candidate best = search.Best(starts);
   if (best.refusal != Refusal::kNone) {

@@ -7,22 +7,21 @@
 
 #include <Eigen/Geometry>
 
+#include "core/assessment/enough.hpp"
+#include "core/assessment/worst_error.hpp"
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/guidance/expected_sample.hpp"
 #include "core/guidance/extrinsic_information.hpp"
 #include "core/guidance/placement.hpp"
-#include "core/guidance/worst_error.hpp"
 #include "core/likelihood/likelihood.hpp"
 
 namespace voqcal {
 
 /// What is asked of the extrinsic, and how its samples are expected to be.
 struct GuidanceOptions {
-  ErrorTolerance tolerance;
-  /// Fewer are not enough, however certain they seem: what they have in common they cannot show.
-  int min_samples = 8;
+  EnoughOptions enough;
   SensorExpectation sensors;
   PlacementLimits limits;
 
@@ -51,14 +50,14 @@ struct NextPose {
   std::string problem;  ///< Why no pose is asked for; what describes one is then meaningless.
   /// By the published covariance; without one, by what the samples tell. Infinite without any.
   WorstError worst;
-  /// There are min_samples, and the published covariance keeps the tolerance. The samples'
+  /// By JudgeEnough, of the published covariance. The samples'
   /// information alone does not do: it knows nothing of errors that the likelihood does not model.
   bool is_enough = false;
   /// After a sample of the pose; NaN if there is none.
   double predicted_worst_error = std::numeric_limits<double>::quiet_NaN();
   Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();
   std::optional<Eigen::Isometry3d> T_lidar_board;  ///< Nothing as long as no extrinsic is known.
-  std::string advice;  ///< EnoughWords if it is, else HoldWords; empty if there is a problem.
+  std::string advice;  ///< Enough::words if it is, else HoldWords; empty if there is a problem.
 };
 
 /// The board's pose that lowers the worst predicted error most, of all that both sensors can see

@@ -17,6 +17,8 @@ Evidence GoodEvidence() {
   evidence.sigma_deg = 0.02;
   evidence.sigma_mm = 1.0;
   evidence.num_used = 30;
+  evidence.is_enough = true;
+  evidence.enough_words = "Enough: 4.2 mm at worst, at 5 m; 5 mm are asked.";
   evidence.num_samples = 31;
   evidence.num_cells = 7;
   evidence.scene = Agreement::kAgrees;
@@ -79,12 +81,16 @@ TEST(VerdictOf, SuspectsTheRangesOnlyWhereTheirOffsetIsTheCause) {
 }
 
 TEST(VerdictOf, WantsMoreOfPosesAndParts) {
-  const auto with_poses = [](int num) {
-    return JudgeWith([num](Evidence* e) { e->num_used = e->num_samples = num; }).grade;
+  const auto with_poses = [](int num, bool is_enough) {
+    return JudgeWith([=](Evidence* e) {
+             e->num_used = e->num_samples = num;
+             e->is_enough = is_enough;
+           })
+        .grade;
   };
-  EXPECT_EQ(with_poses(15), Grade::kGood);
-  EXPECT_EQ(with_poses(14), Grade::kLook);
-  EXPECT_EQ(with_poses(5), Grade::kBad);
+  EXPECT_EQ(with_poses(8, true), Grade::kGood);
+  EXPECT_EQ(with_poses(30, false), Grade::kLook);
+  EXPECT_EQ(with_poses(5, false), Grade::kBad);
   const auto with_cells = [](int num) {
     return JudgeWith([num](Evidence* e) { e->num_cells = num; }).grade;
   };
@@ -112,9 +118,16 @@ TEST(VerdictOf, SaysWhatToDoUnlessItIsGood) {
     }
     return std::string();
   };
-  EXPECT_EQ(text_of(VerdictOf(GoodEvidence()), "Number of poses"), "30 poses were used.");
-  EXPECT_EQ(text_of(JudgeWith([](Evidence* e) { e->num_used = 10; }), "Number of poses"),
-            "10 poses were used. Take more: 20 to 40 are recommended.");
+  EXPECT_EQ(text_of(VerdictOf(GoodEvidence()), "Number of poses"),
+            "30 poses were used. Enough: 4.2 mm at worst, at 5 m; 5 mm are asked.");
+  const auto not_enough = [](Evidence* e) {
+    e->num_used = 10;
+    e->is_enough = false;
+    e->enough_words = "Not enough yet: 6 mm at worst, at 5 m; 5 mm are asked.";
+  };
+  EXPECT_EQ(text_of(JudgeWith(not_enough), "Number of poses"),
+            "10 poses were used. Not enough yet: 6 mm at worst, at 5 m; 5 mm are asked. Take more: "
+            "near and far, to all sides, tilted each way.");
 }
 
 TEST(VerdictOf, LeavesOutASceneThatSaysNothing) {

@@ -82,13 +82,5 @@ TEST(HoldWords, GoByTheImageHoweverTheLidarIsTurned) {
             "towards the camera.");
 }
 
-TEST(EnoughWords, SayWhatIsReachedAndWhatIsAsked) {
-  WorstError worst;
-  worst.error = 4.2461;
-  worst.range_m = 5.0;
-  EXPECT_EQ(EnoughWords(worst, {5.0, ErrorUnit::kMillimetres, 1.0, 5.0}),
-            "Enough: 4.2 mm at worst, at 5 m; 5 mm are asked.");
-}
-
 }  // namespace
 }  // namespace voqcal

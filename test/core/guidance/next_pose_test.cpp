@@ -116,9 +116,9 @@ TEST(ProposeNextPose, SaysEnoughWhenTheToleranceIsMet) {
   const std::vector<BoardSample> samples = Samples(8);
   GuidanceOptions options;
   const double worst_mm = Propose(samples).worst.error;
-  options.tolerance.tolerance = 0.99 * worst_mm;
+  options.enough.tolerance.tolerance = 0.99 * worst_mm;
   EXPECT_FALSE(Propose(samples, options).is_enough);
-  options.tolerance.tolerance = 1.01 * worst_mm;
+  options.enough.tolerance.tolerance = 1.01 * worst_mm;
   const NextPose next = Propose(samples, options);
   EXPECT_TRUE(next.is_enough);
   EXPECT_THAT(next.advice, HasSubstr("Enough"));
@@ -128,9 +128,9 @@ TEST(ProposeNextPose, SaysEnoughWhenTheToleranceIsMet) {
 TEST(ProposeNextPose, NeverSaysEnoughOfFewerSamplesThanAreAsked) {
   const std::vector<BoardSample> samples = Samples(8);
   GuidanceOptions options;
-  options.tolerance.tolerance = 1000.0;
+  options.enough.tolerance.tolerance = 1000.0;
   EXPECT_TRUE(Propose(samples, options).is_enough);
-  options.min_samples = 9;
+  options.enough.min_samples = 9;
   EXPECT_FALSE(Propose(samples, options).is_enough);
 }
 
@@ -142,15 +142,15 @@ TEST(ProposeNextPose, JudgesEnoughByThePublishedCovarianceItself) {
   state.covariance = Matrix6d(state.covariance->diagonal().asDiagonal());
   GuidanceOptions options;
   const double published_mm =
-      ErrorScene(test::TestCamera(), test::TestExtrinsic(), options.tolerance)
+      ErrorScene(test::TestCamera(), test::TestExtrinsic(), options.enough.tolerance)
           .Worst(*state.covariance)
           .error;
   ASSERT_GT(published_mm, 1.1 * least_mm);
-  options.tolerance.tolerance = 1.05 * least_mm;
+  options.enough.tolerance.tolerance = 1.05 * least_mm;
   NextPose next = ProposeNextPose(state, TestGuidedRig(), options);
   EXPECT_EQ(next.worst.error, published_mm);
   EXPECT_FALSE(next.is_enough);
-  options.tolerance.tolerance = 1.01 * published_mm;
+  options.enough.tolerance.tolerance = 1.01 * published_mm;
   next = ProposeNextPose(state, TestGuidedRig(), options);
   EXPECT_TRUE(next.is_enough);
 }
@@ -160,7 +160,7 @@ TEST(ProposeNextPose, NeverSaysEnoughWithoutAPublishedCovariance) {
   GuidanceState state = StateOf(samples);
   state.covariance.reset();
   GuidanceOptions options;
-  options.tolerance.tolerance = 1000.0;
+  options.enough.tolerance.tolerance = 1000.0;
   EXPECT_FALSE(ProposeNextPose(state, TestGuidedRig(), options).is_enough);
 }
 
@@ -179,7 +179,7 @@ TEST(ProposeNextPose, KeepsWhatThePublishedCovarianceHasMore) {
 
 TEST(ProposeNextPose, CountsPixelsWhereToldTo) {
   GuidanceOptions options;
-  options.tolerance = {1.0, ErrorUnit::kPixels, 1.0, 5.0};
+  options.enough.tolerance = {1.0, ErrorUnit::kPixels, 1.0, 5.0};
   const NextPose next = Propose(Samples(6), options);
   EXPECT_GT(next.worst.error, 0.1);
   EXPECT_LT(next.worst.error, 10.0);
@@ -215,7 +215,7 @@ TEST(ProposeNextPose, SaysWhenEveryPlaceIsLikeASample) {
   GuidanceOptions options;
   options.limits.min_distance_m = options.limits.max_distance_m = 2.5;
   options.limits.max_incidence_rad = 7 * M_PI / 180.0;  // no tilt makes it new
-  options.tolerance.tolerance = 1000.0;
+  options.enough.tolerance.tolerance = 1000.0;
   std::vector<BoardSample> samples;
   for (int column = 0; column < 16; ++column) {
     for (int row = 0; row < 10; ++row) {

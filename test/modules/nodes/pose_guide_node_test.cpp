@@ -126,7 +126,7 @@ TEST_F(PoseGuideTest, GoesByTheAverageWhereThereIsNoRefiner) {
 
 // A process that was started again may hear the average first.
 TEST_F(PoseGuideTest, EndsUpTheSameHoweverTheExtrinsicsArrive) {
-  rig_.pose_guide.tolerance.tolerance = 1000.0;
+  rig_.pose_guide.enough.tolerance.tolerance = 1000.0;
   PoseGuideNode both_at_once(rig_, &bus_);
   PoseGuideNode one_by_one(rig_, &bus_);
   SendSamples(test::NoisySamples(8), 8);
@@ -146,7 +146,7 @@ TEST_F(PoseGuideTest, EndsUpTheSameHoweverTheExtrinsicsArrive) {
 }
 
 TEST_F(PoseGuideTest, SaysEnough) {
-  rig_.pose_guide.tolerance.tolerance = 1000.0;
+  rig_.pose_guide.enough.tolerance.tolerance = 1000.0;
   PoseGuideNode easy(rig_, &bus_);
   SendSamples(test::NoisySamples(8), 8);
   Step(&selector_);

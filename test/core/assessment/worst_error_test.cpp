@@ -1,4 +1,4 @@
-#include "core/guidance/worst_error.hpp"
+#include "core/assessment/worst_error.hpp"
 
 #include <cmath>
 

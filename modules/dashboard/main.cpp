@@ -38,12 +38,15 @@ ip::address OutwardAddress(const ip::address& any) {
                : socket.local_endpoint().address();
 }
 
-/// Where this host can be reached, for a server that listens at `address`: the likeliest first.
+/// Where this host can be reached, for a server that listens at `address`: the likeliest first, and
+/// its own address for itself only if there is no other (a network without a way out has one).
 std::vector<ip::address> ReachableAt(const ip::address& address) {
   if (!address.is_unspecified()) return {address};
-  std::vector<ip::address> all = {OutwardAddress(address)};
+  const ip::address outward = OutwardAddress(address);
+  std::vector<ip::address> all;
+  if (!outward.is_loopback()) all.push_back(outward);
   ifaddrs* found = nullptr;
-  if (getifaddrs(&found) != 0) return all;
+  if (getifaddrs(&found) != 0) return {outward};
   for (const ifaddrs* each = found; each != nullptr; each = each->ifa_next) {
     const bool is_up = (each->ifa_flags & IFF_UP) != 0 && (each->ifa_flags & IFF_LOOPBACK) == 0;
     if (!is_up || each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
@@ -53,6 +56,7 @@ std::vector<ip::address> ReachableAt(const ip::address& address) {
     if (std::find(all.begin(), all.end(), ip::address(next)) == all.end()) all.emplace_back(next);
   }
   freeifaddrs(found);
+  if (all.empty()) all.push_back(outward);
   return all;
 }
 

@@ -1,25 +1,26 @@
 #include "messaging/scene_window.hpp"
 
-#include <cstdlib>
+#include <cmath>
 #include <exception>
 #include <utility>
 
+#include "core/problems.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
 
 namespace voqcal {
 namespace {
 
-constexpr std::size_t kNumKept = 5;  // of each sensor
+constexpr double kKeptS = 0.5;  // of each sensor: its messages come later than the other's by less
+
+double SecondsFrom(std::int64_t begin_us, std::int64_t end_us) {
+  return 1e-6 * static_cast<double>(end_us - begin_us);
+}
 
 template <typename Message>
 void Keep(const Message& message, std::deque<Message>* kept) {
   kept->push_back(message);
-  if (kept->size() > kNumKept) kept->pop_front();
-}
-
-double SecondsFrom(std::int64_t begin_us, std::int64_t end_us) {
-  return 1e-6 * static_cast<double>(end_us - begin_us);
+  while (std::abs(SecondsFrom(kept->front().utime, message.utime)) > kKeptS) kept->pop_front();
 }
 
 }  // namespace
@@ -28,16 +29,20 @@ SceneWindow::SceneWindow(const CameraModel& camera,
                          const SceneViewOptions& view,
                          const SceneWindowOptions& options,
                          std::function<void(const std::string&)> on_unusable)
-    : camera_(camera), view_(view), options_(options), on_unusable_(std::move(on_unusable)) {}
+    : camera_(camera), view_(view), options_(options), on_unusable_(std::move(on_unusable)) {
+  RequireUsable("SceneWindowOptions", options_.Problems());
+}
 
 void SceneWindow::Add(const pointcloud2_t& sweep) {
   BeginAnewIfSetBack(sweep.utime);
   Keep(sweep, &sweeps_);
+  ++num_sweeps_alone_;
   Pair();
 }
 
 void SceneWindow::Add(const image_t& image) {
   Keep(image, &images_);
+  ++num_images_alone_;
   Pair();
 }
 
@@ -46,7 +51,8 @@ bool SceneWindow::IsFull() const {
 }
 
 bool SceneWindow::IsWithoutPairs() const {
-  return !last_tried_utime_ && sweeps_.size() == kNumKept && images_.size() == kNumKept;
+  constexpr int kNumTelling = 5;
+  return num_sweeps_alone_ >= kNumTelling && num_images_alone_ >= kNumTelling;
 }
 
 void SceneWindow::Clear() {
@@ -66,27 +72,40 @@ void SceneWindow::BeginAnewIfSetBack(std::int64_t sweep_utime) {
 
 void SceneWindow::Pair() {
   for (const pointcloud2_t& sweep : sweeps_) {
-    for (const image_t& image : images_) {
-      if (TryPair(sweep, image)) return;
-    }
+    const image_t* image = ImageOf(sweep);
+    if (image == nullptr) continue;
+    num_sweeps_alone_ = num_images_alone_ = 0;
+    const bool is_due =
+        !last_tried_utime_ || SecondsFrom(*last_tried_utime_, sweep.utime) >= options_.every_s;
+    if (is_due) return AddView(sweep, *image);
   }
 }
 
-bool SceneWindow::TryPair(const pointcloud2_t& sweep, const image_t& image) {
-  if (std::abs(SecondsFrom(image.utime, sweep.utime)) > options_.max_apart_s) return false;
-  if (last_tried_utime_ && SecondsFrom(*last_tried_utime_, sweep.utime) < options_.every_s) {
-    return false;
+const image_t* SceneWindow::ImageOf(const pointcloud2_t& sweep) const {
+  const image_t* nearest = nullptr;
+  double least_apart_s = options_.max_apart_s;
+  // A nearer one may come until the images have passed the sweep; a slow camera is not waited for.
+  bool is_settled = SecondsFrom(sweep.utime, sweeps_.back().utime) > kKeptS / 2;
+  for (const image_t& image : images_) {
+    const double later_s = SecondsFrom(sweep.utime, image.utime);
+    is_settled = is_settled || later_s >= 0;
+    if (std::abs(later_s) > least_apart_s) continue;
+    least_apart_s = std::abs(later_s);
+    nearest = &image;
   }
+  return is_settled ? nearest : nullptr;
+}
+
+void SceneWindow::AddView(const pointcloud2_t& sweep, const image_t& image) {
   last_tried_utime_ = sweep.utime;
   try {
     views_.push_back(MakeSceneView(FromMessage(sweep), FromMessage(image), camera_, view_));
   } catch (const std::exception& error) {  // one broken message must not end who watches
     on_unusable_(error.what());
-    return true;
+    return;
   }
   if (views_.size() == 1) first_utime_ = sweep.utime;
   last_utime_ = sweep.utime;
-  return true;
 }
 
 }  // namespace voqcal

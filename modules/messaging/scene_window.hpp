@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -16,12 +15,13 @@
 
 namespace voqcal {
 
-/// The scenes of a stretch of time: sweeps with an image of about the same time, not all of a
-/// second's. Messages of the two sensors may come late by some of the other's. Where the sweeps'
+/// The scenes of a stretch of time: sweeps with the image nearest in time, not all of a second's.
+/// Messages of the two sensors may come late by some of the other's. Where the sweeps'
 /// time is set back (a recording starts again) a new stretch begins.
 class SceneWindow {
  public:
   /// @param on_unusable  told of each pair that makes no scene, and why.
+  /// @throws std::invalid_argument if `options` has Problems().
   SceneWindow(const CameraModel& camera,
               const SceneViewOptions& view,
               const SceneWindowOptions& options,
@@ -34,7 +34,7 @@ class SceneWindow {
   std::int64_t first_utime() const { return first_utime_; }  ///< Of its sweeps; 0 without any.
   std::int64_t last_utime() const { return last_utime_; }
   bool IsFull() const;  ///< It lasts window_s.
-  /// Both sensors come, and no image is near a sweep in time.
+  /// Both sensors come, and of late no image is near a sweep in time.
   bool IsWithoutPairs() const;
 
   /// Begins a new stretch.
@@ -43,7 +43,9 @@ class SceneWindow {
  private:
   void BeginAnewIfSetBack(std::int64_t sweep_utime);
   void Pair();
-  bool TryPair(const pointcloud2_t& sweep, const image_t& image);
+  /// Null if none is near enough, or a nearer one may be under way.
+  const image_t* ImageOf(const pointcloud2_t& sweep) const;
+  void AddView(const pointcloud2_t& sweep, const image_t& image);
 
   CameraModel camera_;
   SceneViewOptions view_;
@@ -51,6 +53,8 @@ class SceneWindow {
   std::function<void(const std::string&)> on_unusable_;
   std::deque<pointcloud2_t> sweeps_;
   std::deque<image_t> images_;
+  int num_sweeps_alone_ = 0;  // since a sweep and an image were near in time
+  int num_images_alone_ = 0;
   std::optional<std::int64_t> last_tried_utime_;  // of the last pair's sweep
   std::int64_t first_utime_ = 0;
   std::int64_t last_utime_ = 0;

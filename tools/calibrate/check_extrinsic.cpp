@@ -1,5 +1,6 @@
 // check_extrinsic: is an extrinsic still right? By any recording's scenes, without a board.
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -33,8 +34,8 @@ struct CheckArgs {
   std::filesystem::path log;
   std::filesystem::path extrinsic;
   std::optional<std::filesystem::path> refine;
-  double max_apart_ms = 60;
-  double every_s = 0.9;
+  std::optional<double> max_apart_ms;
+  std::optional<double> every_s;
   int max_scenes = 60;
 };
 
@@ -45,12 +46,14 @@ void AddTo(const LogEvent& event, SceneWindow* window) {
 }
 
 std::vector<SceneView> ViewsOf(const Rig& rig, const CheckArgs& args) {
+  SceneWindowOptions options = rig.extrinsic_monitor.window;
+  if (args.max_apart_ms) options.max_apart_s = 1e-3 * *args.max_apart_ms;
+  if (args.every_s) options.every_s = *args.every_s;
   std::map<std::string, int> unusable;
   SceneWindow window(
-      rig.camera,
-      rig.scene_check.view,
-      {1e-3 * args.max_apart_ms, args.every_s, rig.extrinsic_monitor.window.window_s},
-      [&unusable](const std::string& reason) { ++unusable[reason]; });
+      rig.camera, rig.scene_check.view, options, [&unusable](const std::string& reason) {
+        ++unusable[reason];
+      });
   LogReader reader(args.log);
   try {
     while (const std::optional<LogEvent> event = reader.Next()) {
@@ -67,7 +70,7 @@ std::vector<SceneView> ViewsOf(const Rig& rig, const CheckArgs& args) {
     throw std::runtime_error(
         args.log.string() + ": no usable sweep on " + rig.channels.lidar_points +
         " with an image on " + rig.channels.camera_image + " within " +
-        std::to_string(static_cast<int>(args.max_apart_ms)) + " ms (see --max-apart-ms)");
+        std::to_string(std::lround(1e3 * options.max_apart_s)) + " ms (see --max-apart-ms)");
   }
   return window.views();
 }
@@ -128,11 +131,16 @@ int main(int argc, char** argv) {
                  "A result's folder or its extrinsic.yaml, or any YAML with T_camera_lidar")
       ->required();
   app.add_option("--refine", args.refine, "Write the extrinsic that the scenes ask for (YAML)");
-  app.add_option("--max-apart-ms", args.max_apart_ms, "Between a sweep and its image")
-      ->capture_default_str();
-  app.add_option("--every-s", args.every_s, "At least so long between two scenes")
-      ->capture_default_str();
-  app.add_option("--max-scenes", args.max_scenes, "No more than so many")->capture_default_str();
+  app.add_option(
+         "--max-apart-ms",
+         args.max_apart_ms,
+         "Between a sweep and its image; default: as extrinsic_monitor in the rig file says")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--every-s", args.every_s, "At least so long between two scenes; the same")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--max-scenes", args.max_scenes, "No more than so many")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
   int verdict = EXIT_SUCCESS;
   const int status = voqcal::RunTool(&app, argc, argv, [&] { verdict = voqcal::Check(args); });
   return status != EXIT_SUCCESS ? status : verdict;

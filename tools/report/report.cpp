@@ -36,9 +36,9 @@ void Report(const ReportArgs& args) {
         why + (page_problem.empty() ? "\nwhat was seen: " + (args.session / kNoResultName).string()
                                     : "\nno page of what was seen: " + page_problem));
   }
+  std::filesystem::remove(args.session / kNoResultName);
   const std::string problem = WriteReport(rig, *run, scratch.path());
   if (!problem.empty()) throw std::runtime_error(problem);
-  std::filesystem::remove(args.session / kNoResultName);
   std::cout << "written\n";
   for (const char* name : {kResultJsonName, kReportName}) {
     std::filesystem::rename(scratch.path() / name, args.session / name);

@@ -42,6 +42,9 @@ class AccumulatingDetector {
                             std::int64_t utime,
                             const LidarBackground* background = nullptr);
 
+  /// Whether the lidar sends the same beams each time; nothing before two sweeps that tell.
+  std::optional<bool> is_repeating() const { return is_repeating_; }
+
  private:
   struct Sweep {
     std::int64_t utime = 0;
@@ -58,8 +61,8 @@ class AccumulatingDetector {
 
   BoardSpec board_;
   LidarBoardOptions options_;
-  std::deque<Sweep> sweeps_;          // oldest first
-  std::optional<bool> is_repeating_;  // nothing before two sweeps that tell
+  std::deque<Sweep> sweeps_;  // oldest first
+  std::optional<bool> is_repeating_;
 };
 
 }  // namespace voqcal

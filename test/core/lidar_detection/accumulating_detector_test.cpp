@@ -1,7 +1,7 @@
 #include "core/lidar_detection/accumulating_detector.hpp"
 
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <random>
 #include <stdexcept>
 
@@ -110,6 +110,35 @@ TEST(AccumulatingDetector, TakesALidarThatRepeatsItsBeamsAsItIs) {
         detector.Detect(SweepOf(ScanPattern::kVlp16, kFarAway, i * kSweepUs), i * kSweepUs);
     EXPECT_FALSE(sighting.boards);
     EXPECT_EQ(sighting.accumulated_us, 0);
+  }
+}
+
+/// A wall as 16 rings meet it, fired each 0.4 degrees from `first_deg` on: a VLP-16 at 20 Hz, whose
+/// firings follow a clock and not the head's angle.
+PointCloud FreelyTurningSweep(double first_deg) {
+  constexpr double kDeg = M_PI / 180.0;
+  PointCloud cloud;
+  for (double azimuth_deg = -30.0 + first_deg; azimuth_deg < 30.0; azimuth_deg += 0.4) {
+    for (int ring = 0; ring < 16; ++ring) {
+      const double elevation = (2 * ring - 15) * kDeg;
+      LidarPoint point;
+      point.position_m = 8.0F * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth_deg * kDeg),
+                                                std::cos(elevation) * std::sin(azimuth_deg * kDeg),
+                                                std::sin(elevation))
+                                    .cast<float>();
+      cloud.points.push_back(point);
+    }
+  }
+  return cloud;
+}
+
+TEST(AccumulatingDetector, KnowsALidarThatTurnsFreely) {
+  for (const double aside_deg : {0.1, 0.2, 0.3}) {
+    AccumulatingDetector detector(kBoard, {});
+    detector.Detect(FreelyTurningSweep(0.0), 0);
+    EXPECT_FALSE(detector.is_repeating());
+    detector.Detect(FreelyTurningSweep(aside_deg), kSweepUs / 2);
+    EXPECT_EQ(detector.is_repeating(), std::optional<bool>(true)) << aside_deg;
   }
 }
 

@@ -25,7 +25,7 @@ TEST(NewToken, Is64DigitsAndNeverTheSame) {
   EXPECT_EQ(tokens.size(), 20U);
 }
 
-TEST(SaveAddress, LetsOnlyItsOwnerReadIt) {
+TEST(SaveAddresses, LetsOnlyItsOwnerReadIt) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "url.txt";
   for (const char* address : {"http://a/", "http://b/"}) {

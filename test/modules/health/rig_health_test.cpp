@@ -144,7 +144,6 @@ TEST_F(RigHealthTest, ASensorThatNeverSentIsAFaultOnceItsDriverHasStarted) {
   EXPECT_THAT(Faults(), ElementsAre(Field(&Fault::what, "The lidar has sent nothing yet")));
 }
 
-// Who looks at a session only now knows what its readers have counted.
 // Drivers on a host of their own: whether their data arrive is for the other host to say.
 TEST_F(RigHealthTest, WithoutAReaderNothingIsSaidOfWhatArrives) {
   const std::vector<std::string> drivers = {"lidar_driver", "camera_driver"};
@@ -156,6 +155,7 @@ TEST_F(RigHealthTest, WithoutAReaderNothingIsSaidOfWhatArrives) {
   EXPECT_THAT(health.Faults(At(now_s_)), IsEmpty());
 }
 
+// Who looks at a session only now knows what its readers have counted.
 TEST_F(RigHealthTest, ASensorThatFellSilentBeforeOneLookedIsNotCalledNew) {
   Beat(6);
   is_lidar_sending_ = false;

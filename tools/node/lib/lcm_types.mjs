@@ -13,9 +13,7 @@ export class LcmTypes {
   /** @param {URL} folder  of .lcm files; those in folders of it count as well. */
   constructor(folder) {
     for (const name of readdirSync(folder, { recursive: true }).filter((file) => file.endsWith(".lcm")).sort()) {
-      for (const struct of parseStructs(readFileSync(new URL(name, folder), "utf8"))) {
-        this.#structs.set(struct.name, struct);
-      }
+      for (const struct of structsOf(new URL(name, folder), name)) this.#structs.set(struct.name, struct);
     }
   }
 
@@ -147,8 +145,16 @@ function joinedWhereShort(parts) {
   return joined;
 }
 
+function structsOf(file, name) {
+  try {
+    return parseStructs(readFileSync(file, "utf8"));
+  } catch (error) {
+    throw new Error(`${name}: ${error.message}`);
+  }
+}
+
 function parseStructs(text) {
-  const code = text.replace(/\/\/.*$/gm, "").replace(/\/\*[^]*?\*\//g, "");
+  const code = text.replace(/\/\/.*$|\/\*[^]*?\*\//gm, "");
   return [...code.matchAll(/struct\s+(\w+)\s*\{([^}]*)\}/g)].map(([, name, body]) => ({ name, members: membersOf(body) }));
 }
 
@@ -156,7 +162,9 @@ function membersOf(body) {
   const members = [];
   for (const declaration of body.split(";").map((part) => part.trim()).filter(Boolean)) {
     if (/^const\b/.test(declaration)) continue; // not sent, nor in the fingerprint
-    const [, type, names] = /^(?:[\w.]+\.)?(\w+)\s+(.*)$/s.exec(declaration);
+    const parts = /^(?:[\w.]+\.)?(\w+)\s+(\w.*)$/s.exec(declaration);
+    if (!parts) throw new Error(`cannot read the member "${declaration}"`);
+    const [, type, names] = parts;
     for (const declarator of names.split(/,(?![^[]*\])/)) {
       const dimensions = [...declarator.matchAll(/\[\s*(\w+)\s*\]/g)].map((match) => match[1]);
       members.push({ name: /\w+/.exec(declarator)[0], type, dimensions });

@@ -34,6 +34,9 @@ writeFileSync(
   `package robot;
 struct frame_t { int32_t width; int32_t height; int32_t row_stride; int32_t pixelformat; int32_t size; byte data[size]; }
 struct frames_t { int64_t utime; int32_t num; frame_t images[num]; }
+struct range_image_t {
+  /* The sweep as a picture: see http://example.org/range_images */
+  int64_t utime; int32_t width; int32_t height; int32_t num; echo_t points[num]; }
 struct columns_t { int64_t utime; int32_t num; float x[num]; float y[num]; float z[num]; int32_t other[3]; }
 struct cloud_t {
   int64_t utime; int32_t n_points; float points[n_points][3];
@@ -111,6 +114,20 @@ test("of several clouds, the one on the rig's channel", () => {
   assert.match(refusal(path("two.lcm"), ...importOn()), /has 2 topics of type/);
   const args = importOn("--lidar-channel", "SCAN", "--force", "--out", path("two_out.lcm"));
   assert.match(execFileSync(importRos, [path("two.lcm"), ...args], { encoding: "utf8" }), /SCAN: 2 messages of SCAN/);
+});
+
+test("clouds with a width and a height are no images", () => {
+  const picture = { utime: START_US, width: 3, height: 1, num: 3, points: [0, 1, 2].map(echo) };
+  writeLog("range_images.lcm", [["SCAN", 0, theirs, "range_image_t", picture], ["EYE", 0, ours, "image_t", grey(0)]]);
+  const { clouds } = importTo("range_images.lcm", "--lcm-types", path("types"));
+  assert.deepEqual(pointsOf(clouds[0]).map(({ x }) => x), [1, 2, 3]);
+});
+
+test("a file of types that cannot be read is named", () => {
+  mkdirSync(path("broken"));
+  writeFileSync(path("broken/odd.lcm"), "struct odd_t { int32_t; }");
+  writeLog("scans.lcm", scanEvents);
+  assert.match(refusal(path("scans.lcm"), "--lcm-types", path("broken")), /odd\.lcm: cannot read the member "int32_t"/);
 });
 
 test("types that are not known: said, and how to define them", () => {

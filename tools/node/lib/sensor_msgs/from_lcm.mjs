@@ -42,7 +42,7 @@ function isImage(members) {
 /** @param message  as LcmTypes.decode has it, of a type that lcmKind takes. */
 export function lcmToRos(message) {
   if ("fields" in message && "point_step" in message) return { ...message, header: headerOf(message), is_bigendian: Boolean(message.is_bigendian) };
-  if ("width" in message && "height" in message) return imageOf(message, headerOf(message));
+  if ("width" in message && "height" in message && IMAGE_BYTES.some((name) => name in message)) return imageOf(message, headerOf(message));
   if (Array.isArray(message.images) && message.images.length > 0) return imageOf(message.images[0], headerOf(message));
   if (Array.isArray(message.points) || Array.isArray(message.x)) return cloudOf(message);
   return { stamp: headerOf(message).stamp, data: bytesOf(Object.values(message).find(isByteList)) };
@@ -93,7 +93,7 @@ const ENCODINGS = new Map([
 function imageOf(message, header) {
   const data = bytesOf(message[IMAGE_BYTES.find((name) => name in message)]);
   const { width, height } = message;
-  const isPacked = data.length > 3 && (data.readUInt16BE(0) === 0xffd8 || data.readUInt32BE(0) === 0x89504e47);
+  const isPacked = data.length > 3 && (data.readUIntBE(0, 3) === 0xffd8ff || data.readUInt32BE(0) === 0x89504e47);
   if (isPacked) return { header, format: "", data };
   const name = message.encoding ?? ENCODINGS.get(message.pixelformat) ?? `pixelformat ${message.pixelformat}`;
   const [encoding, isBig] = [name.replace(/ big$/, ""), name.endsWith(" big")];

@@ -31,6 +31,12 @@ std::pair<std::string, int> SessionsText(const std::map<std::string, HeardModule
   return text;
 }
 
+// Who only watches (extrinsic_monitor) disturbs none.
+bool IsOfASession(const std::string& module) {
+  static const std::vector<std::string> kAll = AllModuleNames();
+  return std::find(kAll.begin(), kAll.end(), module) != kAll.end();
+}
+
 }  // namespace
 
 std::vector<std::string> AllModuleNames() {
@@ -125,6 +131,7 @@ std::vector<std::string> Heartbeats::Rivals(Time now, const std::string& own) co
   const int least = own.empty() ? 2 : 1;
   std::vector<std::string> rivals;
   for (const auto& [module, heard] : heard_) {
+    if (!IsOfASession(module)) continue;
     const auto [names, num] = SessionsText(heard.sessions, own, now);
     if (num >= least) rivals.push_back(module + " of " + names + " runs on this network");
   }

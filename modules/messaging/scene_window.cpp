@@ -18,9 +18,8 @@ double SecondsFrom(std::int64_t begin_us, std::int64_t end_us) {
 }
 
 template <typename Message>
-void Keep(const Message& message, std::deque<Message>* kept) {
-  kept->push_back(message);
-  while (std::abs(SecondsFrom(kept->front().utime, message.utime)) > kKeptS) kept->pop_front();
+void ForgetOld(std::deque<Message>* kept) {
+  while (std::abs(SecondsFrom(kept->front().utime, kept->back().utime)) > kKeptS) kept->pop_front();
 }
 
 }  // namespace
@@ -35,15 +34,17 @@ SceneWindow::SceneWindow(const CameraModel& camera,
 
 void SceneWindow::Add(const pointcloud2_t& sweep) {
   BeginAnewIfSetBack(sweep.utime);
-  Keep(sweep, &sweeps_);
+  sweeps_.push_back(sweep);
   ++num_sweeps_alone_;
-  Pair();
+  Pair();  // before the old are forgotten: in slow recordings the next message is far off
+  ForgetOld(&sweeps_);
 }
 
 void SceneWindow::Add(const image_t& image) {
-  Keep(image, &images_);
+  images_.push_back(image);
   ++num_images_alone_;
   Pair();
+  ForgetOld(&images_);
 }
 
 bool SceneWindow::IsFull() const {
@@ -53,6 +54,11 @@ bool SceneWindow::IsFull() const {
 bool SceneWindow::IsWithoutPairs() const {
   constexpr int kNumTelling = 5;
   return num_sweeps_alone_ >= kNumTelling && num_images_alone_ >= kNumTelling;
+}
+
+void SceneWindow::Finish() {
+  is_finished_ = true;
+  Pair();
 }
 
 void SceneWindow::Clear() {
@@ -85,7 +91,7 @@ const image_t* SceneWindow::ImageOf(const pointcloud2_t& sweep) const {
   const image_t* nearest = nullptr;
   double least_apart_s = options_.max_apart_s;
   // A nearer one may come until the images have passed the sweep; a slow camera is not waited for.
-  bool is_settled = SecondsFrom(sweep.utime, sweeps_.back().utime) > kKeptS / 2;
+  bool is_settled = is_finished_ || SecondsFrom(sweep.utime, sweeps_.back().utime) > kKeptS / 2;
   for (const image_t& image : images_) {
     const double later_s = SecondsFrom(sweep.utime, image.utime);
     is_settled = is_settled || later_s >= 0;

@@ -29,6 +29,8 @@ class SceneWindow {
 
   void Add(const pointcloud2_t& sweep);
   void Add(const image_t& image);
+  /// No more come: the last sweep waits for no other image.
+  void Finish();
 
   const std::vector<SceneView>& views() const { return views_; }
   std::int64_t first_utime() const { return first_utime_; }  ///< Of its sweeps; 0 without any.
@@ -55,6 +57,7 @@ class SceneWindow {
   std::deque<image_t> images_;
   int num_sweeps_alone_ = 0;  // since a sweep and an image were near in time
   int num_images_alone_ = 0;
+  bool is_finished_ = false;
   std::optional<std::int64_t> last_tried_utime_;  // of the last pair's sweep
   std::int64_t first_utime_ = 0;
   std::int64_t last_utime_ = 0;

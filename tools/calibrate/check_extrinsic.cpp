@@ -63,6 +63,7 @@ std::vector<SceneView> ViewsOf(const Rig& rig, const CheckArgs& args) {
     }
   } catch (const TruncatedLogError&) {  // what came before the cut is good
   }
+  if (static_cast<int>(window.views().size()) < args.max_scenes) window.Finish();
   for (const auto& [reason, count] : unusable) {
     std::fprintf(stderr, "check_extrinsic: %d pairs make no scene: %s\n", count, reason.c_str());
   }

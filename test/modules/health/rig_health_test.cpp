@@ -196,6 +196,17 @@ TEST_F(RigHealthTest, ASecondSessionIsAFault) {
               ElementsAre(Field(&Fault::cause, HasSubstr("host:/other and of host:/session"))));
 }
 
+TEST_F(RigHealthTest, WhoOnlyWatchesIsNoSecondSession) {
+  Beat(6);
+  for (const char* session : {"host:/one", "host:/two"}) {
+    module_status_t watcher = Status("extrinsic_monitor");
+    watcher.session = session;
+    health_.Take(watcher, At(now_s_));
+  }
+  EXPECT_THAT(Faults(), IsEmpty());
+  EXPECT_THAT(health_.heartbeats().Rivals(At(now_s_), "host:/session"), IsEmpty());
+}
+
 TEST_F(RigHealthTest, ASessionThatIsAboutToStartIsARivalAndNoModule) {
   Beat(6);
   module_status_t other = Status("assessor");

@@ -64,6 +64,17 @@ TEST_F(SceneWindowTest, DoesNotWaitForASlowCamera) {
   EXPECT_EQ(reasons_.size(), 1U);
 }
 
+// A bag thinned to a pair each two seconds, the image a little before its sweep.
+TEST_F(SceneWindowTest, HasEveryPairOfASlowRecording) {
+  for (int i = 0; i < 4; ++i) {
+    AddImage((2000 * i + 990) * kMsUs);
+    AddSweep((2000 * i + 1000) * kMsUs);
+  }
+  EXPECT_EQ(reasons_.size(), 3U);
+  window_.Finish();
+  EXPECT_EQ(reasons_.size(), 4U);
+}
+
 TEST_F(SceneWindowTest, SaysThatTheClocksPartedMeanwhile) {
   const auto add = [this](int i, std::int64_t image_late_us) {
     AddSweep(100 * kMsUs * i);

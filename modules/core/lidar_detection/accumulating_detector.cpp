@@ -31,6 +31,14 @@ std::uint32_t CellOf(const Eigen::Vector3f& position_m) {
   return static_cast<std::uint32_t>(elevation * kNumAzimuths + azimuth);
 }
 
+/// A sweep that was sent twice.
+bool IsSame(const PointCloud& a, const PointCloud& b) {
+  const auto is_same = [](const LidarPoint& p, const LidarPoint& q) {
+    return p.position_m == q.position_m;
+  };
+  return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), is_same);
+}
+
 std::vector<std::uint32_t> CellsOf(const PointCloud& cloud) {
   std::vector<std::uint32_t> cells;
   cells.reserve(cloud.points.size());
@@ -102,6 +110,7 @@ void AccumulatingDetector::TellWhetherRepeating() {
   constexpr std::size_t kTelling = 300;  // returns of a sweep
   constexpr double kMaxAgain = 0.8;      // of its directions, of a lidar that does not repeat them
   if (sweeps_.size() < 2) return;
+  if (IsSame(sweeps_[sweeps_.size() - 2].cloud_lidar_m, sweeps_.back().cloud_lidar_m)) return;
   TakenCells before;
   for (const std::uint32_t cell : sweeps_[sweeps_.size() - 2].cells) before.Take(cell);
   std::size_t num = 0;

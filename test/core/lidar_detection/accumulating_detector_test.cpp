@@ -142,6 +142,15 @@ TEST(AccumulatingDetector, KnowsALidarThatTurnsFreely) {
   }
 }
 
+TEST(AccumulatingDetector, IsToldNothingByASweepThatIsSentTwice) {
+  AccumulatingDetector detector(kBoard, {});
+  detector.Detect(FreelyTurningSweep(0.0), 0);
+  detector.Detect(FreelyTurningSweep(0.0), kSweepUs);
+  EXPECT_FALSE(detector.is_repeating());
+  detector.Detect(FreelyTurningSweep(0.2), 2 * kSweepUs);
+  EXPECT_TRUE(detector.is_repeating());
+}
+
 TEST(AccumulatingDetector, GoesNoFurtherBackThanItIsAllowed) {
   LidarBoardOptions options;
   options.max_accumulation_s = 0.0;

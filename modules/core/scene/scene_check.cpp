@@ -24,9 +24,15 @@ Agreement Judge(double asked, double sigma, double max_sigma, double tolerance, 
 }
 
 // Axes that move the image alike: of such a pair the scene may know neither, but both together.
-const std::vector<int>& AlikeOf(int axis) {
-  static const std::vector<int> kAlike[] = {{0, 4}, {1, 3}, {2}, {1, 3}, {0, 4}, {5}};
-  return kAlike[axis];
+struct AlikeAxes {
+  std::vector<int> axes;
+  int turn;  // Of them; negative: none.
+};
+
+const AlikeAxes& AlikeOf(int axis) {
+  static const AlikeAxes kAlike[] = {{{0, 4}, 0}, {{1, 3}, 1}, {{2}, 2}, {{5}, -1}};
+  constexpr int kGroup[] = {0, 1, 2, 1, 0, 3};
+  return kAlike[kGroup[axis]];
 }
 
 // By what is asked alone: whether that is owed to the axis is asked of those that seem off.
@@ -54,13 +60,13 @@ void JudgeAll(const SceneFit& fit, const SceneCheckOptions& options, SceneCheck*
     if (count(Agreement::kAgrees, 3) >= kEnoughTurns) check->verdict = Agreement::kAgrees;
     return;
   }
-  const double chance = ChanceFall(fit);
-  const bool is_owed_to_scene =
-      GainOf(fit, {0, 1, 2, 3, 4, 5}) > options.min_gain_over_chance * chance;
+  const Eigen::Vector3d chance = ChanceFalls(fit);
   for (int i = 0; i < 6; ++i) {
     Agreement& axis = check->axes[static_cast<std::size_t>(i)];
     if (axis != Agreement::kDisagrees) continue;
-    if (is_owed_to_scene && GainOf(fit, AlikeOf(i)) > chance) {
+    const AlikeAxes& alike = AlikeOf(i);
+    const double by_chance = alike.turn < 0 ? chance.maxCoeff() : chance[alike.turn];
+    if (GainOf(fit, alike.axes) > options.min_gain_over_chance * by_chance) {
       check->verdict = Agreement::kDisagrees;
     } else {
       axis = Agreement::kCannotTell;

@@ -118,7 +118,7 @@ double GainOf(const SceneFit& fit, const std::vector<int>& axes) {
          MeanSurprise(fit.scene, kAllSectors, fit.unknowns);
 }
 
-double ChanceFall(const SceneFit& fit) {
+Eigen::Vector3d ChanceFalls(const SceneFit& fit) {
   constexpr double kStepRad = 0.1 * kRadPerDeg;
   constexpr int kNumSteps = 30;
   constexpr std::size_t kNumWays = 6;  // about three axes, both ways
@@ -134,7 +134,7 @@ double ChanceFall(const SceneFit& fit) {
       falls[way] = std::max(falls[way], highest - surprise);
     }
   });
-  return *std::max_element(falls.begin(), falls.end());
+  return {std::max(falls[0], falls[1]), std::max(falls[2], falls[3]), std::max(falls[4], falls[5])};
 }
 
 std::string TooFewEdges(int num_scenes, int num_edges) {

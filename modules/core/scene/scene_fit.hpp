@@ -44,11 +44,11 @@ HeldOutGain HeldOutGainOf(const SceneFit& fit, int max_iterations);
 /// How much less the surprise is than with some axes (0 to 5) put back to where they were.
 double GainOf(const SceneFit& fit, const std::vector<int>& axes);
 
-/// By how much the surprise falls where it has no reason to: the largest fall on the way outward
-/// from the fit, turned about each axis, up to 3 deg. Where scan lines that are far apart cross
+/// By how much the surprise falls where it has no reason to: for a turn about each axis the largest
+/// fall on the way outward from the fit, up to 3 deg. Where scan lines that are far apart cross
 /// edges that lie along them, such hollows are as deep as what a real turn gains, and all parts of
 /// the scene share them: neither its curvature nor their scatter shows that.
-double ChanceFall(const SceneFit& fit);
+Eigen::Vector3d ChanceFalls(const SceneFit& fit);
 
 /// Why scenes tell nothing, in words.
 std::string TooFewEdges(int num_scenes, int num_edges);

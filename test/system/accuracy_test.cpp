@@ -120,7 +120,7 @@ TEST_F(RealSession, EvaluateNamesTheInverse) {
                                             "--extrinsic",
                                             inverse});
   EXPECT_EQ(evaluate.status, 1);
-  EXPECT_THAT(evaluate.err, HasSubstr("every board is behind the camera"));
+  EXPECT_THAT(evaluate.err, HasSubstr("boards are behind the camera"));
   EXPECT_THAT(evaluate.err, HasSubstr("is it the inverse?"));
 }
 

@@ -67,6 +67,9 @@ std::vector<SceneView> ViewsOf(const Rig& rig, const CheckArgs& args) {
   for (const auto& [reason, count] : unusable) {
     std::fprintf(stderr, "check_extrinsic: %d pairs make no scene: %s\n", count, reason.c_str());
   }
+  if (window.views().empty() && !unusable.empty()) {
+    throw std::runtime_error(args.log.string() + ": no pair makes a scene (the cause is above)");
+  }
   if (window.views().empty()) {
     throw std::runtime_error(
         args.log.string() + ": no usable sweep on " + rig.channels.lidar_points +
@@ -86,6 +89,10 @@ void Print(const SceneCheck& check) {
   std::printf("%d scenes, %d depth edges in the images; camera axes: x right, y down, z forward\n",
               check.num_scenes,
               check.num_edges);
+  if (!check.sigma.allFinite()) {  // no axis has a number
+    std::printf("the extrinsic: %s: %s\n", ToString(check.verdict).c_str(), check.reason.c_str());
+    return;
+  }
   for (int i = 0; i < 6; ++i) {
     const double unit = i < 3 ? kDegPerRad : 1e3;
     std::printf("%-13s  %8.2f +- %5.2f %s  %s\n",

@@ -1,10 +1,13 @@
 // evaluate: scores an extrinsic on poses that it never saw.
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "calibrate/advice.hpp"
@@ -13,6 +16,7 @@
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
 #include "core/assessment/best_extrinsic.hpp"
+#include "core/format.hpp"
 #include "core/selection/consistency.hpp"
 #include "files/atomic_file.hpp"
 #include "files/sha256.hpp"
@@ -29,16 +33,21 @@ struct EvaluateArgs {
   std::filesystem::path extrinsic;
 };
 
+// "-" for what cannot be told: an edge that was not measured, a centre behind the camera.
+std::string Column(double value, int width, int decimals) {
+  return std::isnan(value) ? Format("%*s", width, "-") : Format("%*.*f", width, decimals, value);
+}
+
 void PrintPoses(const std::vector<const BoardSample*>& samples, const SceneScore& score) {
   std::puts("sample  centre_px  centre_mm  corner_mm  normal_deg");
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const PoseScore& pose = score.poses[i];
-    std::printf("%6lld  %9.2f  %9.2f  %9.2f  %10.3f\n",
+    std::printf("%6lld  %s  %s  %s  %s\n",
                 static_cast<long long>(samples[i]->id),
-                pose.centre_px,
-                pose.centre_mm,
-                pose.corner_mm,
-                pose.normal_deg);
+                Column(pose.centre_px, 9, 2).c_str(),
+                Column(pose.centre_mm, 9, 2).c_str(),
+                Column(pose.corner_mm, 9, 2).c_str(),
+                Column(pose.normal_deg, 10, 3).c_str());
   }
 }
 
@@ -49,18 +58,22 @@ bool IsInImage(const BoardSample& sample,
   return camera.IsInFront(centre_camera_m) && camera.Contains(camera.Project(centre_camera_m));
 }
 
-/// The camera saw every board: a transform that puts none into its image is another one.
+/// The camera saw every board: a transform that puts most elsewhere is another one.
 void RequireBoardsInImage(const std::vector<const BoardSample*>& samples,
                           const CameraModel& camera,
                           const Eigen::Isometry3d& T_camera_lidar,
                           const std::filesystem::path& file) {
-  const bool is_any = std::any_of(samples.begin(), samples.end(), [&](const BoardSample* sample) {
-    return IsInImage(*sample, camera, T_camera_lidar);
-  });
-  if (is_any || samples.empty()) return;
-  throw std::runtime_error(file.string() +
-                           ": by it every board is behind the camera or outside its image: is it "
-                           "the inverse? T_camera_lidar takes lidar coordinates to the camera's");
+  const auto num_inside =
+      std::count_if(samples.begin(), samples.end(), [&](const BoardSample* sample) {
+        return IsInImage(*sample, camera, T_camera_lidar);
+      });
+  const auto num_outside = static_cast<std::ptrdiff_t>(samples.size()) - num_inside;
+  if (num_outside <= num_inside) return;
+  throw std::runtime_error(file.string() + ": by it " + std::to_string(num_outside) + " of " +
+                           std::to_string(samples.size()) +
+                           " boards are behind the camera or outside its image: is it the inverse, "
+                           "or another rig's? T_camera_lidar takes lidar coordinates to the "
+                           "camera's");
 }
 
 /// Whether the file says that it was made from these very samples.

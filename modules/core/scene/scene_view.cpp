@@ -9,6 +9,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "core/format.hpp"
 #include "core/problems.hpp"
 
 namespace voqcal {
@@ -127,7 +128,11 @@ SceneView ViewOf(const std::vector<DepthEdge>& edges,
                  const MakeMask& make_mask) {
   RequireUsable("SceneViewOptions", options.Problems());
   if (image.cols != camera.width_px || image.rows != camera.height_px || image.depth() != CV_8U) {
-    throw std::invalid_argument("MakeSceneView: the image is not of the camera's size");
+    throw std::invalid_argument(Format("image of %d x %d px, the camera's are %d x %d",
+                                       image.cols,
+                                       image.rows,
+                                       camera.width_px,
+                                       camera.height_px));
   }
   SceneView view;
   view.edges = edges;

@@ -51,7 +51,8 @@ std::string TrialText(const MethodTrial& trial) {
 }
 
 std::string MethodLines(const CalibrationResult& result) {
-  std::string text = "method  " + ToString(result.method) + " (error on poses held out:";
+  std::string text =
+      "method  " + ToString(result.method) + " (error on poses held out, of centre and corners:";
   for (const MethodTrial& trial : result.trials) {
     text += (&trial == &result.trials[0] ? " " : ", ") + ToString(trial.method) +
             (trial.problem.empty() ? TrialText(trial) : ": " + trial.problem);
@@ -59,15 +60,16 @@ std::string MethodLines(const CalibrationResult& result) {
   text += ")\n";
   if (!result.scene_note.empty()) text += "scene   " + result.scene_note + "\n";
   if (!result.lidar_bias.IsObservable()) return text + "lidar's range errors  not estimated\n";
+  text += "lidar's range errors  common " + result.lidar_bias.common.Text() +
+          ", dark against bright " + result.lidar_bias.dark_step.Text();
+  if (result.lidar_bias.rings.size() < 2) return text + "\n";  // a cloud without ring numbers
   double lowest_m = 0.0;
   double highest_m = 0.0;
   for (const BiasEstimate& ring : result.lidar_bias.rings) {
     lowest_m = std::min(lowest_m, ring.value_m);
     highest_m = std::max(highest_m, ring.value_m);
   }
-  return text + "lidar's range errors  common " + result.lidar_bias.common.Text() +
-         ", dark against bright " + result.lidar_bias.dark_step.Text() +
-         Format(", rings %+.1f to %+.1f mm\n", 1e3 * lowest_m, 1e3 * highest_m);
+  return text + Format(", rings %+.1f to %+.1f mm\n", 1e3 * lowest_m, 1e3 * highest_m);
 }
 
 std::string LensLines(const CalibrationResult& result) {
@@ -155,8 +157,9 @@ std::string Summary(const CalibrationResult& result) {
   text += "lidar's boards  sum of the edges' errors (e_dim) " + Tenths(result.e_dim_mm) +
           " mm, median of the samples\n";
   text += SceneLines(result) + DiagnosisLines(result.diagnosis);
+  if (!result.rejected.empty()) text += "left out\n";
   for (const RejectedSample& rejected : result.rejected) {
-    text += "left out\n  sample " + std::to_string(rejected.id) + ": " + rejected.reason + "\n";
+    text += "  sample " + std::to_string(rejected.id) + ": " + rejected.reason + "\n";
   }
   for (const ExchangedSample& exchanged : result.exchanged) {
     text += "lidar's candidate " + std::to_string(exchanged.candidate + 1) + " taken\n  sample " +

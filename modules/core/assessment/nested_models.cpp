@@ -115,6 +115,11 @@ bool IsWorthAWord(const Candidate& candidate,
           IntervalsOf(MoveBetween(before, fit), covariance) > options.min_moved_intervals);
 }
 
+// Two digits that count, never as 1.3e+02.
+int DecimalsOf(double value) {
+  return std::max(0, 1 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
+}
+
 // What three sigma of a fault, which the samples could not tell, would do to the result.
 void SayWhatCouldHide(const std::vector<Candidate>& candidates,
                       const Matrix6d& covariance,
@@ -125,12 +130,14 @@ void SayWhatCouldHide(const std::vector<Candidate>& candidates,
       const double hidden = kSigmas * candidate.fit.StandardError(fault);
       const Vector6d move = hidden * candidate.fit.ExtrinsicBy(fault);
       if (!(IntervalsOf(move, covariance) > 1)) continue;
-      diagnosis->not_judged.push_back(
-          Format("%s: an error of %.2g %s could hide in these samples; ",
-                 candidate.suspect.cause.c_str(),
-                 candidate.suspect.scale * hidden,
-                 candidate.suspect.unit.c_str()) +
-          MoveText(move, covariance));
+      const double size = candidate.suspect.scale * hidden;
+      const std::string& unit = candidate.suspect.unit;
+      diagnosis->not_judged.push_back(Format("%s: an error of %.*f%s could hide in these samples; ",
+                                             candidate.suspect.cause.c_str(),
+                                             DecimalsOf(size),
+                                             size,
+                                             unit.empty() ? "" : (" " + unit).c_str()) +
+                                      MoveText(move, covariance));
       break;  // the other parameters of a group are much alike
     }
   }
@@ -154,6 +161,7 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
   };
   for (const FaultParameter fault : known) remove_suspects({fault});
   std::string open_causes;
+  std::string last_open_cause;
   while (now.is_usable && !suspects.empty()) {
     std::vector<Candidate> candidates;
     for (const Suspect& suspect : suspects) {
@@ -164,7 +172,10 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
         candidate.gain = candidate.fit.log_likelihood - now.log_likelihood;
         candidates.push_back(candidate);
       } else if (fitted == known) {
+        // The coefficients of a lens are suspects of one name.
+        if (last_open_cause == suspect.cause) continue;
         open_causes += (open_causes.empty() ? "" : ", ") + suspect.cause;
+        last_open_cause = suspect.cause;
       }
     }
     if (fitted == known) {

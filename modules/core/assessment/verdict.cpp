@@ -78,13 +78,12 @@ void AddFit(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
       "If a few poses stand out, discard them; if most are off, check the board and the camera in "
       "the rig file.",
       checks);
-  AddNumber(
-      "Poses it was made from",
-      ratio,
-      kOverfitRatio,
-      "That is " + Number(ratio, 2, "times") + " the error on the poses that made the result.",
-      "The result fits these too well: take more samples.",
-      checks);
+  AddNumber("Poses it was made from",
+            ratio,
+            kOverfitRatio,
+            "Left out of the fit they err " + Number(ratio, 2, "times") + " as much as in it.",
+            "The result fits these too well: take more samples.",
+            checks);
   AddNumber(
       "Board directions",
       evidence.normal_deg,

@@ -143,7 +143,7 @@ def ring_figure(bias):
         (ring, 1e3 * value, 1e3 * (error or 0.0))
         for ring, (value, error) in enumerate(zip(rings.get("value", []), rings.get("standard_error", [])))
     ]
-    if not bars:
+    if len(bars) < 2:  # a cloud without ring numbers has one
         return None
     return svg.error_bars("Range offset of each ring", "ring (by its number)", "reads too long by (mm)", bars)
 

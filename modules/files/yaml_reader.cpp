@@ -109,13 +109,25 @@ bool HasMoreThanOneDocument(const std::string& text) {
   return parser.HandleNextDocument(ignore) && parser.HandleNextDocument(ignore);
 }
 
+/// yaml-cpp's words, and what people who read them had done.
+std::string SyntaxText(const std::string& message) {
+  const bool is_layout = message == "end of map not found" || message == "illegal map value";
+  return "is not YAML: " + message +
+         (is_layout
+              ? " (is a colon missing here or above, or is it indented unlike its neighbours?)"
+              : "");
+}
+
 YAML::Node ParseDocument(const std::string& name, const std::string& text) {
+  if (text.find('\0') != std::string::npos) {
+    throw std::runtime_error(name + ": is not a text file (wanted: YAML)");
+  }
   try {
     const YAML::Node document = YAML::Load(text);
     if (document.IsMap() && !HasMoreThanOneDocument(text)) return document;
   } catch (const YAML::Exception& error) {
     const YamlHint hint =
-        FindYamlHint(text).value_or(YamlHint{error.mark.line + 1, "is not YAML: " + error.msg});
+        FindYamlHint(text).value_or(YamlHint{error.mark.line + 1, SyntaxText(error.msg)});
     throw std::runtime_error(name + ":" + std::to_string(hint.line) + ": " + hint.text);
   }
   throw std::runtime_error(name + ":1: must be one mapping of keys to values" +

@@ -36,7 +36,8 @@ std::string ToString(FrameNaming naming) {
       " clouds from " + NameOf(cloud) + ", " + std::to_string(images.size()) + " images from " +
       NameOf(image) +
       "): give a cloud and its image the same number; or, if the first belong together, the second "
-      "and so on, say so: frames_by: order under both drivers in the rig file, or --pair order");
+      "and so on, say so: frames_by: order under both drivers in the rig file, or --pair order; if "
+      "a folder holds several files of one number, file_ending in the rig file says which");
 }
 
 /// Nothing if it is not there or empty, which is for its own driver to say.

@@ -163,6 +163,44 @@ void DoubtLens(const CameraModel& camera, Lines* lines) {
   }
 }
 
+/// p1 and p2 are what a lens stands askew: small. Another model's k3 and k4 are not.
+void DoubtTangential(const CameraModel& camera, Lines* lines) {
+  constexpr double kMax = 0.03;
+  if (camera.lens == LensModel::kEquidistant) return;
+  const double p1 = camera.distortion[2];
+  const double p2 = camera.distortion[3];
+  if (std::abs(p1) <= kMax && std::abs(p2) <= kMax) return;
+  lines->push_back(
+      Format("camera.distortion: p1 and p2 (the third and fourth) are %.4g and %.4g, usually below "
+             "%g: are these k1 k2 k3 k4 of an equidistant lens, or is it another order?",
+             p1,
+             p2,
+             kMax));
+}
+
+void DoubtGuess(const Rig& rig, Lines* lines) {
+  constexpr double kMaxM = 10;
+  if (!rig.T_camera_lidar_guess) return;
+  const double length_m = rig.T_camera_lidar_guess->translation().norm();
+  if (length_m <= kMaxM) return;
+  lines->push_back(
+      Format("camera.T_camera_lidar_guess.translation_m puts the lidar %.4g m from the "
+             "camera: it is in metres: in millimetres?",
+             length_m));
+}
+
+// ---- The lidar's board ----
+
+void DoubtRange(const Rig& rig, Lines* lines) {
+  constexpr double kMaxM = 500;
+  if (rig.lidar_board_detector.max_range_m <= kMaxM) return;
+  lines->push_back(
+      Format("lidar_board_detector.max_range_m is %.6g: it is in metres: in "
+             "millimetres? Then give %.6g",
+             rig.lidar_board_detector.max_range_m,
+             rig.lidar_board_detector.max_range_m / 1000));
+}
+
 // ---- The drivers ----
 
 void DoubtFile(const char* key, const std::filesystem::path& path, Lines* lines) {
@@ -217,6 +255,7 @@ std::vector<std::string> CameraDoubts(const CameraModel& camera) {
   DoubtFocalLength("fy_px", camera.fy_px, camera.height_px, &lines);
   DoubtAspect(camera, &lines);
   DoubtPrincipalPoint(camera, &lines);
+  DoubtTangential(camera, &lines);
   if (lines.empty()) DoubtLens(camera, &lines);
   return lines;
 }
@@ -240,6 +279,8 @@ std::vector<std::string> DriverDoubts(const Rig& rig) {
 std::vector<std::string> RigDoubts(const Rig& rig) {
   Lines lines = BoardDoubts(rig.board);
   Append(CameraDoubts(rig.camera), &lines);
+  DoubtGuess(rig, &lines);
+  DoubtRange(rig, &lines);
   Append(DriverDoubts(rig), &lines);
   return lines;
 }

@@ -1,6 +1,6 @@
 #include "rig/rig_sections.hpp"
 
-#include <set>
+#include <map>
 #include <variant>
 
 #include "core/camera/named_lens.hpp"
@@ -28,7 +28,7 @@ void ReadLcm(YamlSection* top, Rig* rig, std::string* channel_prefix) {
 void ReadChannels(YamlSection* top, const std::string& prefix, Channels* channels) {
   constexpr std::size_t kMaxLength = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH of LCM 1.3
   YamlSection section = top->Section("channels");
-  std::set<std::string> taken;
+  std::map<std::string, const char*> taken;  // channel: its key
   const auto read = [&](const char* key, std::string* channel) {
     section.Read(key, channel);
     if (channel->empty()) section.AddError(key, "must not be empty");
@@ -36,7 +36,10 @@ void ReadChannels(YamlSection* top, const std::string& prefix, Channels* channel
     if (channel->size() > kMaxLength) {
       section.AddError(key, "must have at most 63 letters, prefix included");
     }
-    if (!taken.insert(*channel).second) section.AddError(key, "must differ from other channels");
+    const auto [same, is_new] = taken.emplace(*channel, key);
+    if (!is_new) {  // the one that the file gives: the other may be a default
+      section.AddError(section.Has(key) ? key : same->second, "must differ from other channels");
+    }
   };
   read("lidar_points", &channels->lidar_points);
   read("lidar_packets", &channels->lidar_packets);

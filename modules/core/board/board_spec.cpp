@@ -18,10 +18,13 @@ std::vector<std::string> BoardSpec::Problems() const {
   // missing.
   const double span_x_m = SquaresTo(num_corners_x - 1) * square_m;
   const double span_y_m = SquaresTo(num_corners_y - 1) * square_m;
+  problems.Require(span_x_m < width_m,
+                   "the pattern's corners along x must span less than width_m (both are in metres)",
+                   span_x_m);
   problems.Require(
-      span_x_m < width_m, "the pattern's corners along x must span less than width_m", span_x_m);
-  problems.Require(
-      span_y_m < height_m, "the pattern's corners along y must span less than height_m", span_y_m);
+      span_y_m < height_m,
+      "the pattern's corners along y must span less than height_m (both are in metres)",
+      span_y_m);
   return problems.lines();
 }
 

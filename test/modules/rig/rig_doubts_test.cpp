@@ -94,6 +94,26 @@ TEST(CameraDoubts, AcceptsUsualCameras) {
   EXPECT_THAT(CameraDoubts(wide), IsEmpty());
 }
 
+TEST(CameraDoubts, NamesAnotherLensModelsCoefficients) {
+  CameraModel camera = UsualCamera();
+  camera.distortion = {-0.054, -0.078, 0.096, -0.052};
+  EXPECT_THAT(CameraDoubts(camera), ElementsAre(HasSubstr("of an equidistant lens")));
+  camera.lens = LensModel::kEquidistant;
+  EXPECT_THAT(CameraDoubts(camera), IsEmpty());
+}
+
+TEST(RigDoubts, NamesMillimetres) {
+  Rig rig;
+  rig.board = UsualBoard();
+  rig.camera = UsualCamera();
+  rig.T_camera_lidar_guess = Eigen::Isometry3d(Eigen::Translation3d(60, -100, -40));
+  rig.lidar_board_detector.max_range_m = 12000;
+  EXPECT_THAT(RigDoubts(rig),
+              ElementsAre(HasSubstr("puts the lidar 123.3 m from the camera"),
+                          HasSubstr("max_range_m is 12000: it is in metres: in millimetres? Then "
+                                    "give 12")));
+}
+
 TEST(CameraDoubts, NamesFocalLengthsThatAreNotInPixels) {
   CameraModel camera = UsualCamera();
   camera.fx_px = 0.7;

@@ -268,6 +268,9 @@ TEST(LoadRig, ReportsProblemsOfBoardAndCamera) {
 TEST(LoadRig, RefusesChannelsThatLcmOrTheFlowCannotTellApart) {
   EXPECT_EQ(LoadError(Minimal() + "channels: {voq_sets: LIDAR_BOARD}\n"),
             "rig.yaml:5: channels.voq_sets must differ from other channels, is \"LIDAR_BOARD\"");
+  EXPECT_EQ(
+      LoadError(Minimal() + "channels: {lidar_points: CAMERA_IMAGE}\n"),  // the other's default
+      "rig.yaml:5: channels.lidar_points must differ from other channels, is \"CAMERA_IMAGE\"");
   EXPECT_EQ(LoadError(Minimal() + "channels: {voq_sets: \"\"}\n"),
             "rig.yaml:5: channels.voq_sets must not be empty, is \"\"");
   EXPECT_THAT(LoadError(Minimal() + "lcm: {channel_prefix: " + std::string(60, 'P') + "}\n"),
@@ -289,7 +292,10 @@ TEST(LoadRig, RefusesWhatIsNoRigFile) {
             "rig.yaml:3: is indented by a tab: give spaces");
   EXPECT_EQ(LoadError("rig: x\nboard:\n  width_m:0.6\n  height_m: 0.8\n"),
             "rig.yaml:3: lacks a space after its colon");
-  EXPECT_THAT(LoadError(std::string("\x89PNG\r\n\x1a\n\0\0\xff\xfe", 12)), StartsWith("rig.yaml:"));
+  EXPECT_EQ(LoadError(std::string("\x89PNG\r\n\x1a\n\0\0\xff\xfe", 12)),
+            "rig.yaml: is not a text file (wanted: YAML)");
+  EXPECT_THAT(LoadError("rig: x\nboard:\n  width_m 0.6\n  height_m: 0.8\n"),
+              HasSubstr("is a colon missing here or above"));
   const test::TemporaryFolder folder;
   EXPECT_THAT(test::ErrorOf([&] { LoadRig(folder.path() / "none.yaml"); }),
               EndsWith("none.yaml: cannot be read: No such file or directory"));

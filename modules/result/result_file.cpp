@@ -180,4 +180,13 @@ std::string LogSha256Of(const std::string& text, const std::string& name) {
   return log_sha256;
 }
 
+bool IsToBeMended(const std::string& text, const std::string& name) {
+  YamlDocument document(name, text);
+  YamlSection top(&document);
+  std::string grade;
+  top.Section("verdict").Read("grade", &grade);
+  document.ThrowIfWrong();
+  return grade == ToString(Grade::kBad);
+}
+
 }  // namespace voqcal

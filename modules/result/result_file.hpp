@@ -45,4 +45,7 @@ Eigen::Isometry3d ExtrinsicOf(const std::string& text, const std::string& name);
 /// @throws std::runtime_error if it has none.
 std::string LogSha256Of(const std::string& text, const std::string& name);
 
+/// Whether such a text says that it is not to be used (verdict.grade bad). False if it has none.
+bool IsToBeMended(const std::string& text, const std::string& name);
+
 }  // namespace voqcal

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <spdlog/spdlog.h>
+
 #include "common/output_file.hpp"
 #include "common/tool_main.hpp"
 #include "files/atomic_file.hpp"
@@ -27,6 +29,10 @@ struct ExportArgs {
 void Export(ExportArgs args) {
   for (const std::string& problem : args.extrinsic.Problems()) throw std::runtime_error(problem);
   args.extrinsic.T_camera_lidar = ReadExtrinsic(args.result);
+  const std::filesystem::path file = ResultFileAt(args.result);
+  if (IsToBeMended(ReadWholeFile(file), file.string())) {
+    spdlog::warn("{}: its verdict is: do not use it; the result says why", file.string());
+  }
   if (args.rig) args.extrinsic.camera = LoadRig(*args.rig).camera;
   const std::string text = ExtrinsicText(args.format, args.extrinsic);
   if (!args.out.path.empty()) {

@@ -279,5 +279,11 @@ TEST(ReadExtrinsic, NamesWhatIsMissing) {
               EndsWith("none.yaml: cannot be read: No such file or directory"));
 }
 
+TEST(IsToBeMended, FollowsTheVerdictsGrade) {
+  EXPECT_TRUE(IsToBeMended("verdict: {grade: bad}\n", "e.yaml"));
+  EXPECT_FALSE(IsToBeMended("verdict: {grade: look}\n", "e.yaml"));
+  EXPECT_FALSE(IsToBeMended("T_camera_lidar: {}\n", "e.yaml"));  // another program's
+}
+
 }  // namespace
 }  // namespace voqcal

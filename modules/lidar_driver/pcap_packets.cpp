@@ -44,7 +44,10 @@ class PcapPackets : public PacketSource {
     pcap_.reset(pcap_open_offline(path.c_str(), error.data()));
     if (!pcap_) {
       const std::string foreign = ForeignFileText(path);
-      throw std::runtime_error(path.string() + ": " + (foreign.empty() ? error.data() : foreign));
+      const std::string name = path.string() + ": ";
+      std::string problem = error.data();
+      if (problem.rfind(name, 0) == 0) problem.erase(0, name.size());
+      throw std::runtime_error(name + (foreign.empty() ? problem : foreign));
     }
     const auto link = LinkOf(pcap_datalink(pcap_.get()));
     if (!link) {

@@ -151,11 +151,12 @@ int main(int argc, char** argv) {
   const std::map<std::string, RecordingTimes> times = {{"auto", RecordingTimes::kAuto},
                                                        {"stamps", RecordingTimes::kStamps},
                                                        {"log", RecordingTimes::kLog}};
-  app.add_option("--times",
-                 args.input.times,
-                 "Of a recording: a message's time is its stamp, or when it was recorded (log); "
-                 "auto takes stamps unless they are of different clocks")
-      ->transform(CLI::CheckedTransformer(times).description(""));
+  app.add_option_function<std::string>(
+         "--times",
+         [&](const std::string& name) { args.input.times = times.at(name); },
+         "Of a recording: a message's time is its stamp, or when it was recorded (log); auto, "
+         "unless told, takes stamps unless they are of different clocks")
+      ->check(CLI::IsMember({"auto", "stamps", "log"}));
   app.add_option(
          "--out",
          args.out,

@@ -1,10 +1,12 @@
 #include "calibrate/collect.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 
 #include <spdlog/spdlog.h>
+#include <system_error>
 
 #include "common/progress.hpp"
 #include "core/format.hpp"
@@ -63,7 +65,15 @@ std::unique_ptr<OfflineRun> RunFromSamplesLog(const Rig& rig,
   LogReader reader(log);
   while (reader.Next()) {
   }
-  std::filesystem::copy_file(log, session_folder / kSamplesLogName);
+  std::error_code error;
+  std::filesystem::copy_file(log, session_folder / kSamplesLogName, error);
+  if (error) {  // of a full disk the library says only "Input/output error"
+    std::error_code unknown;
+    const bool is_full = std::filesystem::space(session_folder, unknown).available <
+                         std::filesystem::file_size(log, unknown);
+    throw std::runtime_error(session_folder.string() + ": cannot be written: " +
+                             (is_full ? "No space left on device" : error.message()));
+  }
   RequireThisCamera(log, SessionLog(session_folder).samples(), rig);
   return std::make_unique<OfflineRun>(rig, session_folder);
 }

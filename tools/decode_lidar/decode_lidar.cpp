@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <system_error>
+
 #include "common/tool_main.hpp"
 #include "decode_lidar/sweep_pcd.hpp"
 #include "files/atomic_file.hpp"
@@ -35,7 +37,11 @@ class SweepFolder {
  public:
   explicit SweepFolder(fs::path folder) : folder_(std::move(folder)) {
     static const std::regex kName("sweep_[0-9]+\\.pcd");
-    fs::create_directories(folder_);
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error) {
+      throw std::runtime_error(folder_.string() + ": cannot make the folder: " + error.message());
+    }
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
       if (std::regex_match(entry.path().filename().string(), kName)) fs::remove(entry.path());
     }
@@ -75,8 +81,10 @@ LidarPacketOptions StreamOptions(const DecodeArgs& args) {
 void RequirePackets(const DecodeArgs& args, const LidarPacketStream& stream) {
   if (stream.Counts().count("packets") > 0) return;
   const std::string wrong = stream.WrongLidar();
-  throw std::runtime_error(args.capture.string() + ": " +
-                           (wrong.empty() ? "no packet with points" : wrong));
+  throw std::runtime_error(
+      args.capture.string() + ": " + (wrong.empty() ? "no packet with points" : wrong) +
+      (wrong.empty() && args.port != 0 ? " to port " + std::to_string(args.port) + " (0: to any)"
+                                       : ""));
 }
 
 void PrintCounts(const DecodeArgs& args,
@@ -123,12 +131,17 @@ int main(int argc, char** argv) {
   app.add_option("capture", args.capture, "The capture (pcap, pcapng)")->required();
   app.add_option("--model", args.model, "The lidar: " + voqcal::LidarProtocolNames())->required();
   app.add_option("--calibration", args.calibration, "The vendor's file on this very unit");
-  app.add_option("--out", args.out, "The folder for sweep_0000.pcd, ...")->required();
+  app.add_option(
+         "--out", args.out, "The folder for sweep_0000.pcd, ...; those that are there are replaced")
+      ->required();
   app.add_option("--port", args.port, "Only packets to this port; 0: to any")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));
-  app.add_option("--returns", args.returns, "Of a beam's echoes: both (all), strongest or last")
-      ->transform(CLI::CheckedTransformer(choices).description(""));
+  app.add_option_function<std::string>(
+         "--returns",
+         [&](const std::string& name) { args.returns = choices.at(name); },
+         "Of a beam's echoes; both, unless told: all of them")
+      ->check(CLI::IsMember({"both", "strongest", "last"}));
   app.add_option("--split-azimuth",
                  args.split_azimuth_deg,
                  "Degrees, clockwise from the lidar's zero, at which sweeps end")

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   app.add_option("file", file, "The file (YAML)")->required();
   app.add_option("--camera", camera, "Which camera of a camchain: cam0 unless told");
   return voqcal::RunTool(&app, argc, argv, [&] {
-    std::cout << "camera:\n" << voqcal::CameraYaml(voqcal::ReadCameraFile(file, camera), "  ");
+    const voqcal::CameraModel read = voqcal::ReadCameraFile(file, camera);
+    std::cout << "camera:\n" << voqcal::CameraYaml(read, "  ");
   });
 }

@@ -11,6 +11,7 @@ import base64
 import json
 import os
 import pathlib
+import re
 import sys
 
 sys.path.append("/usr/lib/python3/dist-packages")
@@ -124,12 +125,18 @@ def poses(samples, folder):
     return [{**sample, "pictures": {kind: picture(folder, sample, kind) for kind in kinds}} for sample in samples]
 
 
+def kind_of(reason):
+    """A reason without its details: "lidar: board bent" of "lidar: board bent by 481 mm"."""
+    parts = reason.split(": ")
+    kept = parts[:2] if parts[0] in ("lidar", "camera") else parts[:1]
+    return re.sub(r" by \d.*", "", ": ".join(kept))
+
+
 def rejected_frames(frames):
     """Reasons with how often and when (seconds after the first)."""
     found = {}
     for frame in frames["rejected"]:
-        reason = frame["reason"].split(": ")[0]
-        found.setdefault(reason, []).append(frame["utime"])
+        found.setdefault(kind_of(frame["reason"]), []).append(frame["utime"])
     start = min((f["utime"] for f in frames["rejected"]), default=0)
     return [
         {"reason": reason, "count": len(times), "seconds": [(t - start) / 1e6 for t in times]}

@@ -66,7 +66,7 @@ function coverageText(samples: Sample[], rig: Rig): string {
   const distances = samples.map((sample) => sample.distance_m);
   const span = `${Math.min(...distances).toFixed(1)} to ${Math.max(...distances).toFixed(1)} m`;
   const where = empty.length === 0 ? "All parts of the image have one." : `None yet: ${empty.join(", ")}.`;
-  return `${samples.length} samples at ${span}. ${where}`;
+  return `${samples.length} ${samples.length === 1 ? "sample" : "samples"} at ${span}. ${where}`;
 }
 
 function drawImageCoverage(canvas: HTMLCanvasElement, rig: Rig, samples: Sample[]): void {

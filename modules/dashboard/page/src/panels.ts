@@ -199,7 +199,7 @@ export function showFaults(faults: Fault[]): void {
 
 /** Names of modules keep their small letter. */
 function sentence(text: string): string {
-  return /^[a-z]+[_-]/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1);
+  return /^[a-z]+[_/-]/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1);
 }
 
 function faultItem(): HTMLElement {

@@ -49,7 +49,7 @@ TEST_F(SceneWindowTest, TakesTheNearestImage) {
   EXPECT_THAT(reasons_, IsEmpty());  // a nearer one may be under way
   AddImage(1010 * kMsUs);
   AddBrokenImage(1050 * kMsUs);
-  EXPECT_THAT(reasons_, ElementsAre(HasSubstr("not of the camera's size")));
+  EXPECT_THAT(reasons_, ElementsAre(HasSubstr("px, the camera's are")));
 }
 
 TEST_F(SceneWindowTest, HasTheImageOfASweepThatComesLateFromAFastCamera) {

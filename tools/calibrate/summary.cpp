@@ -100,7 +100,12 @@ std::string SceneLines(const CalibrationResult& result) {
     }
     text += line + "\n";
   }
-  text += "predicted, 1 sigma, middle of the image (worst corner)\n ";
+  const bool has_open_corner = std::any_of(
+      result.predicted.begin(), result.predicted.end(), [](const PredictedError& error) {
+        return std::isnan(error.corner_px);
+      });
+  text += std::string("predicted, 1 sigma, middle of the image (worst corner") +
+          (has_open_corner ? "; -: the lens model has no ray there" : "") + ")\n ";
   for (const PredictedError& error : result.predicted) {
     text += Format(" %.0f m: ", error.range_m) + Tenths(error.centre_px) + " px (" +
             Tenths(error.corner_px) + ");";

@@ -32,22 +32,19 @@ struct DecodeArgs {
   double split_azimuth_deg = 0.0;
 };
 
-// The folder's sweeps, which are replaced.
+// The folder's sweeps, which are replaced once there is one to replace them.
 class SweepFolder {
  public:
   explicit SweepFolder(fs::path folder) : folder_(std::move(folder)) {
-    static const std::regex kName("sweep_[0-9]+\\.pcd");
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error) {
       throw std::runtime_error(folder_.string() + ": cannot make the folder: " + error.message());
     }
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-      if (std::regex_match(entry.path().filename().string(), kName)) fs::remove(entry.path());
-    }
   }
 
   void Write(const TimedSweep& sweep) {
+    if (num_sweeps_ == 0) RemoveOld();
     char name[32];
     std::snprintf(name, sizeof(name), "sweep_%04d.pcd", num_sweeps_++);
     WriteFileAtomically(folder_ / name, SweepPcd(sweep));
@@ -58,6 +55,13 @@ class SweepFolder {
   std::int64_t num_points() const { return num_points_; }
 
  private:
+  void RemoveOld() const {
+    static const std::regex kName("sweep_[0-9]+\\.pcd");
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+      if (std::regex_match(entry.path().filename().string(), kName)) fs::remove(entry.path());
+    }
+  }
+
   fs::path folder_;
   int num_sweeps_ = 0;
   std::int64_t num_points_ = 0;

@@ -121,7 +121,7 @@ TEST_F(RealSession, EvaluateNamesTheInverse) {
                                             inverse});
   EXPECT_EQ(evaluate.status, 1);
   EXPECT_THAT(evaluate.err, HasSubstr("boards are behind the camera"));
-  EXPECT_THAT(evaluate.err, HasSubstr("is it the inverse?"));
+  EXPECT_THAT(evaluate.err, HasSubstr("is it the inverse, or another rig's?"));
 }
 
 }  // namespace

@@ -194,7 +194,7 @@ const YAML::Node* YamlSection::Find(const std::string& key) {
   const bool is_given = entry != entries_.end();
   document_->known_keys_.push_back({PathOf(key), is_given ? entry->second.line : 0, false, ""});
   if (!is_given) {
-    if (is_required_) document_->AddError(line_, PathOf(key) + " is missing");
+    if (is_required_) document_->AddError(line_, PathOf(key) + " is missing" + remedy_);
     is_complete_ = is_complete_ && !is_required_;
     return nullptr;
   }

@@ -68,10 +68,11 @@ class YamlSection {
   /// Degrees in the file, radians here.
   void ReadDegrees(const std::string& key, double* value_rad);
 
-  /// The same as Read, and an error if the key is not given.
+  /// The same as Read, and an error if the key is not given, which ends with `remedy`.
   template <typename Value>
-  void ReadRequired(const std::string& key, Value* value) {
+  void ReadRequired(const std::string& key, Value* value, const std::string& remedy = "") {
     is_required_ = true;
+    remedy_ = remedy;
     Read(key, value);
     is_required_ = false;
   }
@@ -112,6 +113,7 @@ class YamlSection {
   std::map<std::string, Entry> entries_;
   std::set<std::string> known_;  ///< Keys that were asked for.
   bool is_required_ = false;
+  std::string remedy_;  ///< Of the required key that is read.
   bool is_complete_ = true;
 };
 

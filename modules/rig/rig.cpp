@@ -57,15 +57,23 @@ CalibrationTask Rig::Task() const {
            pose_guide.enough}};
 }
 
-Rig LoadRig(const std::filesystem::path& path) {
+namespace {
+
+Rig Load(const std::filesystem::path& path, LensInRig* lens) {
   const std::string text = ReadWholeFile(path);
   YamlDocument document(path.string(), text);
   Rig rig;
   rig.path = path;
   rig.sha256 = Sha256OfBytes(text);
-  ReadRigSections(&document, &rig);
+  ReadRigSections(&document, &rig, lens);
   document.ThrowIfWrong();
   return rig;
 }
+
+}  // namespace
+
+Rig LoadRig(const std::filesystem::path& path) { return Load(path, nullptr); }
+
+Rig LoadRig(const std::filesystem::path& path, LensInRig* lens) { return Load(path, lens); }
 
 }  // namespace voqcal

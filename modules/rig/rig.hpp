@@ -165,4 +165,15 @@ struct Rig {
 ///     wrong types, Problems() of any part.
 Rig LoadRig(const std::filesystem::path& path);
 
+/// What a rig file says of a lens that may still have to be found.
+struct LensInRig {
+  std::optional<LensModel> model;  ///< Nothing: not given, or `automatic`.
+  /// The whole camera, if all of it is given. Of Rig::camera width_px and height_px are then as
+  /// given too, else 0 where they are not.
+  std::optional<CameraModel> camera;
+};
+
+/// The same of a rig file whose camera may be unknown, whole or in part.
+Rig LoadRig(const std::filesystem::path& path, LensInRig* lens);
+
 }  // namespace voqcal

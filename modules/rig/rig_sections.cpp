@@ -1,5 +1,7 @@
 #include "rig/rig_sections.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <variant>
 
@@ -90,6 +92,8 @@ void ReadBoard(YamlSection* top, BoardSpec* board) {
   section.RefuseUnknownKeys();
 }
 
+constexpr const char* kPixelKeys[] = {"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
+
 void ReadLens(YamlSection* section, CameraModel* camera) {
   std::string lens_model;
   std::vector<double> distortion;
@@ -105,19 +109,60 @@ void ReadLens(YamlSection* section, CameraModel* camera) {
   camera->distortion = lens->distortion;
 }
 
+void ReadIntrinsics(YamlSection* section, CameraModel* camera) {
+  ReadLens(section, camera);
+  section->ReadRequired("width_px", &camera->width_px);
+  section->ReadRequired("height_px", &camera->height_px);
+  section->ReadRequired(
+      "fx_px",
+      &camera->fx_px,
+      " (calibrate_lens finds the camera's numbers from a recording of the board)");
+  section->ReadRequired("fy_px", &camera->fy_px);
+  section->ReadRequired("cx_px", &camera->cx_px);
+  section->ReadRequired("cy_px", &camera->cy_px);
+  if (section->IsComplete()) section->AddProblems(camera->Problems());
+}
+
+bool HasWholeLens(const YamlSection& section) {
+  return section.Has("lens_model") && section.Has("distortion") &&
+         std::all_of(std::begin(kPixelKeys), std::end(kPixelKeys), [&](const char* key) {
+           return section.Has(key);
+         });
+}
+
+// What is left of the keys of a camera whose lens is to be found: sizes and model hold, the rest is
+// as good as not given.
+void ReadPartOfLens(YamlSection* section, CameraModel* camera, LensInRig* lens) {
+  std::string model = "automatic";
+  std::vector<double> distortion;
+  section->Read("lens_model", &model);
+  section->Read("distortion", &distortion);
+  section->Read("width_px", &camera->width_px);
+  section->Read("height_px", &camera->height_px);
+  for (const char* key : {"fx_px", "fy_px", "cx_px", "cy_px"}) {
+    double ignored = 0;
+    section->Read(key, &ignored);
+  }
+  lens->model = LensModelFromString(model);
+  if (!lens->model && model != "automatic") {
+    section->AddError(
+        "lens_model",
+        "must be automatic, equidistant, plumb_bob or rational (rational_polynomial)");
+  }
+}
+
 void ReadCamera(YamlSection* top,
                 CameraModel* camera,
-                std::optional<Eigen::Isometry3d>* T_camera_lidar_guess) {
-  YamlSection section = top->RequiredSection("camera");
+                std::optional<Eigen::Isometry3d>* T_camera_lidar_guess,
+                LensInRig* lens) {
+  YamlSection section = lens != nullptr ? top->Section("camera") : top->RequiredSection("camera");
   if (!top->Has("camera")) return;
-  ReadLens(&section, camera);
-  section.ReadRequired("width_px", &camera->width_px);
-  section.ReadRequired("height_px", &camera->height_px);
-  section.ReadRequired("fx_px", &camera->fx_px);
-  section.ReadRequired("fy_px", &camera->fy_px);
-  section.ReadRequired("cx_px", &camera->cx_px);
-  section.ReadRequired("cy_px", &camera->cy_px);
-  if (section.IsComplete()) section.AddProblems(camera->Problems());
+  if (lens == nullptr || HasWholeLens(section)) {
+    ReadIntrinsics(&section, camera);
+    if (lens != nullptr) *lens = {camera->lens, *camera};
+  } else {
+    ReadPartOfLens(&section, camera, lens);
+  }
   YamlSection guess = section.Section("T_camera_lidar_guess");
   if (section.Has("T_camera_lidar_guess")) {
     T_camera_lidar_guess->emplace(Eigen::Isometry3d::Identity());
@@ -321,14 +366,14 @@ void ReadExtrinsicMonitor(YamlSection* top,
 
 }  // namespace
 
-void ReadRigSections(YamlDocument* document, Rig* rig) {
+void ReadRigSections(YamlDocument* document, Rig* rig, LensInRig* lens) {
   YamlSection top(document);
   std::string channel_prefix;
   top.ReadRequired("rig", &rig->name);
   ReadLcm(&top, rig, &channel_prefix);
   ReadChannels(&top, channel_prefix, &rig->channels);
   ReadBoard(&top, &rig->board);
-  ReadCamera(&top, &rig->camera, &rig->T_camera_lidar_guess);
+  ReadCamera(&top, &rig->camera, &rig->T_camera_lidar_guess, lens);
   ReadLidarDriver(&top, rig->path, &rig->lidar_driver, &rig->lidar_sensor);
   ReadCameraDriver(&top, rig->path, &rig->camera_driver);
   ReadSimulation(&top, &rig->simulation);

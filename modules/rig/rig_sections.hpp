@@ -6,7 +6,8 @@
 namespace voqcal {
 
 /// Fills everything of `rig` that its file says; what is wrong becomes an error of `document`.
-/// `rig->path` is given: folders are relative to it.
-void ReadRigSections(YamlDocument* document, Rig* rig);
+/// `rig->path` is given: folders are relative to it. With `lens`, the camera's numbers may be
+/// missing.
+void ReadRigSections(YamlDocument* document, Rig* rig, LensInRig* lens = nullptr);
 
 }  // namespace voqcal

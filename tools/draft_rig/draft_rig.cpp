@@ -11,11 +11,13 @@
 
 #include "common/output_file.hpp"
 #include "common/tool_main.hpp"
-#include "draft_rig/camera_from_boards.hpp"
-#include "draft_rig/recorded_images.hpp"
+#include "core/format.hpp"
+#include "core/lens_calibration/lens_calibration.hpp"
+#include "core/lens_calibration/lens_view.hpp"
 #include "draft_rig/rig_draft.hpp"
 #include "files/atomic_file.hpp"
 #include "import/camera_file.hpp"
+#include "import/recorded_images.hpp"
 
 namespace voqcal {
 namespace {
@@ -28,6 +30,14 @@ struct DraftArgs {
 };
 
 constexpr std::size_t kMaxImages = 60;  // more tell no more of a lens
+
+// A draft is better than none: calibrate_lens demands more.
+LensCalibrationOptions LensDemands() {
+  LensCalibrationOptions options;
+  options.min_views = 5;
+  options.max_sigma = 0.05;
+  return options;
+}
 
 std::string NameOf(const std::filesystem::path& recording) {
   const std::filesystem::path whole = std::filesystem::absolute(recording).lexically_normal();
@@ -67,41 +77,54 @@ Rig WithAnyCamera(RigDraft draft) {
 
 void AddEstimatedCamera(const DraftArgs& args, RigDraft* draft) {
   const Rig rig = WithAnyCamera(*draft);
-  CameraFromBoards boards(rig.board);
+  cv::Size image_px;
+  std::size_t num_images = 0;
+  std::vector<LensView> boards;
   ForEachImage(
-      args.recording, rig.channels.camera_image, kMaxImages, [&boards](const cv::Mat& grey) {
-        boards.Take(grey);
+      args.recording, rig.channels.camera_image, kMaxImages, [&](const RecordedImage& image) {
+        ++num_images;
+        if (image_px.empty()) image_px = image.grey.size();
+        if (image.grey.size() != image_px) return;
+        if (auto view = SeeLensView(image.grey, rig.board, image.utime)) boards.push_back(*view);
       });
-  const auto estimate = boards.Solve();
-  if (!estimate) {
+  const LensCalibration found = CalibrateLens(
+      ChooseViews(boards, rig.board, image_px, {}).views, rig.board, image_px, LensDemands());
+  if (!found.refusal.empty()) {
     throw std::runtime_error(
         args.recording.string() +
         ": the camera's numbers are not given, and cannot be estimated: " +
-        std::to_string(boards.num_boards()) + " of " + std::to_string(boards.num_images()) +
-        " images (" + std::to_string(boards.size().width) + " x " +
-        std::to_string(boards.size().height) + ") show a board of " +
-        std::to_string(rig.board.num_corners_x) + " x " + std::to_string(rig.board.num_corners_y) +
-        " corners, and " + std::to_string(CameraFromBoards::kMinBoards) +
-        " turned each way are needed. Check board.num_corners_x and _y, or give the file of the "
+        std::to_string(boards.size()) + " of " + std::to_string(num_images) + " images (" +
+        std::to_string(image_px.width) + " x " + std::to_string(image_px.height) +
+        ") show a board of " + std::to_string(rig.board.num_corners_x) + " x " +
+        std::to_string(rig.board.num_corners_y) + " corners; " + found.refusal +
+        ". Check board.num_corners_x and _y, or give the file of the "
         "camera's calibration (--camera FILE), or its numbers:" +
         "\n  camera.fx_px=900 camera.fy_px=900  focal lengths, pixels"
         "\n  camera.cx_px=640 camera.cy_px=360  principal point"
         "\n  camera.lens_model=plumb_bob        or rational, equidistant (a fisheye)"
         "\n  camera.distortion=[-0.4,0.2,0,0,0] k1 k2 p1 p2 k3; of a fisheye k1 k2 k3 k4");
   }
+  const LensFit& fit = found.best->fit;
+  const std::string words =
+      Format("estimated from %zu boards in these images: %.2f px RMS, fx %.1f +- %.1f px",
+             found.views.size(),
+             fit.rms_px,
+             fit.camera.fx_px,
+             fit.Sigma(0));
   spdlog::warn(
       "no camera is given: its intrinsics are {}. The result can be no better than they are: a "
-      "calibration of the camera of its own (--camera FILE) is better.",
-      estimate->words);
-  draft->Add(estimate->camera, estimate->words);
+      "recording for the camera alone (calibrate_lens), or a calibration that you have (--camera "
+      "FILE), is better.",
+      words);
+  draft->Add(fit.camera, words);
 }
 
 void AddImageSize(const DraftArgs& args, RigDraft* draft) {
   if (draft->Has("camera", "width_px") && draft->Has("camera", "height_px")) return;
   const std::string channel = WithAnyCamera(*draft).channels.camera_image;
-  ForEachImage(args.recording, channel, 1, [&](const cv::Mat& grey) {
-    draft->AddDefault("camera", "width_px", std::to_string(grey.cols));
-    draft->AddDefault("camera", "height_px", std::to_string(grey.rows));
+  ForEachImage(args.recording, channel, 1, [&](const RecordedImage& image) {
+    draft->AddDefault("camera", "width_px", std::to_string(image.grey.cols));
+    draft->AddDefault("camera", "height_px", std::to_string(image.grey.rows));
   });
 }
 

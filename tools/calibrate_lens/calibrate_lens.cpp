@@ -1,0 +1,158 @@
+// calibrate_lens: a camera's intrinsics from a recording of the board.
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "calibrate_lens/lens_summary.hpp"
+#include "calibrate_lens/rig_with_camera.hpp"
+#include "common/output_file.hpp"
+#include "common/progress.hpp"
+#include "common/tool_main.hpp"
+#include "core/lens_calibration/lens_calibration.hpp"
+#include "core/lens_calibration/lens_view.hpp"
+#include "files/atomic_file.hpp"
+#include "import/recorded_images.hpp"
+#include "result/camera_yaml.hpp"
+#include "rig/rig.hpp"
+
+namespace voqcal {
+namespace {
+
+struct LensArgs {
+  std::filesystem::path rig;
+  std::filesystem::path log;
+  std::string lens_model;  ///< Empty: the rig file's.
+  std::size_t max_images = 2000;
+  OutputFile written;
+};
+
+/// The board in all of a recording's images.
+struct SeenBoards {
+  cv::Size image_px;
+  std::size_t num_images = 0;
+  std::map<std::string, std::size_t> without;  ///< Images by the reason for no board.
+  std::vector<LensView> views;
+};
+
+SeenBoards SeeBoards(const Rig& rig, const LensArgs& args) {
+  SeenBoards seen;
+  Progress progress("images");
+  const std::size_t num_unreadable = ForEachImage(
+      args.log, rig.channels.camera_image, args.max_images, [&](const RecordedImage& image) {
+        progress.Show(image.share, std::to_string(seen.views.size()) + " boards");
+        ++seen.num_images;
+        if (seen.image_px.empty()) seen.image_px = image.grey.size();
+        if (image.grey.size() != seen.image_px) {
+          ++seen.without["of another size than the first"];
+          return;
+        }
+        auto view = SeeLensView(image.grey, rig.board, image.utime);
+        if (view) {
+          seen.views.push_back(std::move(*view));
+        } else {
+          ++seen.without[ToString(view.error().fault)];
+        }
+      });
+  if (num_unreadable > 0) seen.without["cannot be decoded"] = num_unreadable;
+  seen.num_images += num_unreadable;
+  std::stable_sort(seen.views.begin(), seen.views.end(), [](const LensView& a, const LensView& b) {
+    return a.utime < b.utime;
+  });
+  return seen;
+}
+
+void RequireSize(const Rig& rig, const SeenBoards& seen) {
+  const CameraModel& camera = rig.camera;
+  if ((camera.width_px == 0 || camera.width_px == seen.image_px.width) &&
+      (camera.height_px == 0 || camera.height_px == seen.image_px.height)) {
+    return;
+  }
+  throw std::runtime_error(
+      rig.path.string() + ": camera.width_px and height_px are " + std::to_string(camera.width_px) +
+      " x " + std::to_string(camera.height_px) + ", the images are " +
+      std::to_string(seen.image_px.width) + " x " + std::to_string(seen.image_px.height));
+}
+
+void PrintImages(const SeenBoards& seen, const ViewChoice& choice) {
+  std::printf("images      %zu of %d x %d px, %zu with a board, %zu of different poses\n",
+              seen.num_images,
+              seen.image_px.width,
+              seen.image_px.height,
+              seen.views.size(),
+              choice.views.size());
+  const auto print = [](std::size_t num, const std::string& reason) {
+    if (num > 0) std::printf("left out    %zu: %s\n", num, reason.c_str());
+  };
+  for (const auto& [reason, num] : seen.without) print(num, reason);
+  print(choice.num_moving, "the board moves");
+  print(choice.num_blurred, "blurred");
+  print(choice.num_repeated, "a pose that others show");
+  print(choice.num_beyond, "more poses than are of use");
+}
+
+std::optional<LensModel> ModelToFind(const LensArgs& args, const LensInRig& lens) {
+  if (args.lens_model.empty()) return lens.model;
+  return LensModelFromString(args.lens_model);  // nothing: automatic
+}
+
+void CalibrateLensOf(const LensArgs& args) {
+  LensInRig lens;
+  const Rig rig = LoadRig(args.rig, &lens);
+  if (!args.written.path.empty()) args.written.Prepare();
+  const SeenBoards seen = SeeBoards(rig, args);
+  RequireSize(rig, seen);
+  ViewChoiceOptions choice_options;
+  choice_options.max_still_motion_px = rig.sample_collector.max_still_motion_px;
+  const ViewChoice choice = ChooseViews(seen.views, rig.board, seen.image_px, choice_options);
+  PrintImages(seen, choice);
+
+  LensCalibrationOptions options;
+  options.lens = ModelToFind(args, lens);
+  options.max_rms_px = rig.camera_board_detector.max_reprojection_rms_px;
+  const LensCalibration calibration =
+      CalibrateLens(choice.views, rig.board, seen.image_px, options);
+  std::printf("%s", LensSummary(calibration, rig.board, lens.camera).c_str());
+  if (!calibration.refusal.empty()) {
+    throw DemandNotMet("do not use it: " + calibration.refusal);
+  }
+  const CameraModel camera = Rounded(calibration.best->fit.camera);
+  std::printf("for the rig file\ncamera:\n%s", CameraYaml(camera, "  ").c_str());
+  if (args.written.path.empty()) return;
+  WriteFileAtomically(args.written.path, RigWithCamera(ReadWholeFile(args.rig), camera));
+  std::printf("written\n  %s\n", args.written.path.c_str());
+}
+
+}  // namespace
+}  // namespace voqcal
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Finds a camera's intrinsics (focal lengths, principal point, distortion) from a recording "
+      "of the board: 20 or more poses, near, all over the image, tilted each way, at rest. The rig "
+      "file needs the board's numbers; the camera's may be missing.\n"
+      "Exit status: 0 found; 1 and 2 errors; 3 it should not be used, and why.",
+      "calibrate_lens");
+  voqcal::LensArgs args;
+  app.add_option("rig", args.rig, "The rig file (YAML): board and channels")->required();
+  app.add_option(
+         "--log", args.log, "A recording (LCM log), a session's samples.lcm, or a folder of images")
+      ->required();
+  app.add_option("--lens-model",
+                 args.lens_model,
+                 "By default the rig file's, or automatic: the simplest that predicts images held "
+                 "out as well as any")
+      ->check(CLI::IsMember({"automatic", "equidistant", "plumb_bob", "rational"}));
+  app.add_option("--max-images", args.max_images, "Looked at, spread over the recording")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option(
+      "--write", args.written.path, "Write a copy of the rig file with the camera in it");
+  app.add_flag("--force", args.written.is_forced, "Overwrite that file");
+  return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::CalibrateLensOf(args); });
+}

@@ -183,8 +183,8 @@ YamlSection YamlSection::Section(const std::string& key) {
   return {document_, node, PathOf(key), entry->second.line};
 }
 
-YamlSection YamlSection::RequiredSection(const std::string& key) {
-  if (!Has(key)) document_->AddError(line_, PathOf(key) + " is missing");
+YamlSection YamlSection::RequiredSection(const std::string& key, const std::string& remedy) {
+  if (!Has(key)) document_->AddError(line_, PathOf(key) + " is missing" + remedy);
   return Section(key);
 }
 

@@ -51,8 +51,8 @@ class YamlSection {
 
   /// A mapping within this one; empty if it is not given.
   YamlSection Section(const std::string& key);
-  /// The same, and an error if it is not given.
-  YamlSection RequiredSection(const std::string& key);
+  /// The same, and an error if it is not given, which ends with `remedy`.
+  YamlSection RequiredSection(const std::string& key, const std::string& remedy = "");
 
   bool Has(const std::string& key) const { return entries_.count(key) > 0; }
 

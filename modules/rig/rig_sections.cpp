@@ -92,6 +92,8 @@ void ReadBoard(YamlSection* top, BoardSpec* board) {
   section.RefuseUnknownKeys();
 }
 
+constexpr char kLensRemedy[] =
+    " (calibrate_lens finds the camera's numbers from a recording of the board)";
 constexpr const char* kPixelKeys[] = {"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
 
 void ReadLens(YamlSection* section, CameraModel* camera) {
@@ -113,10 +115,7 @@ void ReadIntrinsics(YamlSection* section, CameraModel* camera) {
   ReadLens(section, camera);
   section->ReadRequired("width_px", &camera->width_px);
   section->ReadRequired("height_px", &camera->height_px);
-  section->ReadRequired(
-      "fx_px",
-      &camera->fx_px,
-      " (calibrate_lens finds the camera's numbers from a recording of the board)");
+  section->ReadRequired("fx_px", &camera->fx_px, kLensRemedy);
   section->ReadRequired("fy_px", &camera->fy_px);
   section->ReadRequired("cx_px", &camera->cx_px);
   section->ReadRequired("cy_px", &camera->cy_px);
@@ -155,7 +154,8 @@ void ReadCamera(YamlSection* top,
                 CameraModel* camera,
                 std::optional<Eigen::Isometry3d>* T_camera_lidar_guess,
                 LensInRig* lens) {
-  YamlSection section = lens != nullptr ? top->Section("camera") : top->RequiredSection("camera");
+  YamlSection section =
+      lens != nullptr ? top->Section("camera") : top->RequiredSection("camera", kLensRemedy);
   if (!top->Has("camera")) return;
   if (lens == nullptr || HasWholeLens(section)) {
     ReadIntrinsics(&section, camera);

@@ -29,6 +29,7 @@ using ::testing::HasSubstr;
 
 const std::vector<std::string> kModules = AllModuleNames();
 const std::vector<std::string> kTools = {"calibrate",
+                                         "calibrate_lens",
                                          "check_rig",
                                          "command",
                                          "compare",

@@ -119,7 +119,9 @@ void CalibrateLensOf(const LensArgs& args) {
       CalibrateLens(choice.views, rig.board, seen.image_px, options);
   std::printf("%s", LensSummary(calibration, rig.board, lens.camera).c_str());
   if (!calibration.refusal.empty()) {
-    throw DemandNotMet("do not use it: " + calibration.refusal);
+    const bool is_restless = choice.num_moving > choice.views.size();
+    throw DemandNotMet("do not use it: " + calibration.refusal +
+                       (is_restless ? " (in most others the board moves: let it rest)" : ""));
   }
   const CameraModel camera = Rounded(calibration.best->fit.camera);
   std::printf("for the rig file\ncamera:\n%s", CameraYaml(camera, "  ").c_str());

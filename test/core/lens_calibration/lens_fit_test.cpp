@@ -103,6 +103,24 @@ TEST(FitLens, IsWithinFourSigmaOfTheTruth) {
   }
 }
 
+// Boards with markers: of each a part.
+TEST(FitLens, TakesWhatOfABoardIsSeen) {
+  const CameraModel truth = test::SmallCamera(LensModel::kPlumbBob);
+  test::LensViewsOptions options;
+  options.num_views = 16;
+  std::vector<LensView> views = test::MakeLensViews(truth, options);
+  test::Random random(3);
+  for (LensView& view : views) {
+    for (Eigen::Vector2d& corner_px : view.corners_px) {
+      if (random.Uniform(0, 1) < 0.4) corner_px.setConstant(std::nan(""));
+    }
+  }
+  const auto fit = FitFromNothing(WholeForm(truth.lens), SizeOf(truth), views);
+  ASSERT_TRUE(fit);
+  const Eigen::VectorXd error = ErrorOf(*fit, truth);
+  for (int i = 0; i < error.size(); ++i) EXPECT_LT(std::abs(error[i]), 4 * fit->Sigma(i)) << i;
+}
+
 // The real camera's lens, 30 poses, corners to 0.2 px: fx to a thousandth, and its intervals hold.
 TEST(FitLens, KnowsHowWellItKnowsTheLens) {
   VOQCAL_LEAVE_TO_RELEASE();

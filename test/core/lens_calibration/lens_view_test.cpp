@@ -107,5 +107,19 @@ TEST(SeeLensView, FindsCornersAndTheirSharpnessWithoutALens) {
   EXPECT_EQ(nothing.error().fault, CameraBoardFault::kNoBoard);
 }
 
+TEST(SeeLensView, TakesAPartOfABoardWithMarkers) {
+  BoardSpec board = test::TestBoard();
+  board.pattern = "charuco";
+  board.marker_m = 0.07;
+  Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();
+  T_camera_board.linear() = ExpSO3({M_PI, 0, 0}) * ExpSO3({0.2, 0.3, 0});
+  T_camera_board.translation() << 0.55, 0, 0.8;  // beyond the image's right border
+  const cv::Mat image = test::RenderBoard(kCamera, board, T_camera_board);
+  const auto part = SeeLensView(image, board, 7);
+  ASSERT_TRUE(part) << part.error().detail;
+  EXPECT_GE(NumCorners(*part), 12U);
+  EXPECT_LT(NumCorners(*part), 35U);
+}
+
 }  // namespace
 }  // namespace voqcal

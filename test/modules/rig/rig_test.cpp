@@ -189,11 +189,51 @@ TEST(LoadRig, RefusesUnknownAndRepeatedKeys) {
 
 TEST(LoadRig, NamesWhatIsMissing) {
   EXPECT_EQ(LoadError(std::string(kHead) + kCamera), "rig.yaml:1: board is missing");
-  EXPECT_EQ(LoadError(std::string(kHead) + kBoard), "rig.yaml:1: camera is missing");
+  EXPECT_THAT(LoadError(std::string(kHead) + kBoard),
+              AllOf(StartsWith("rig.yaml:1: camera is missing"), HasSubstr("calibrate_lens")));
   EXPECT_EQ(LoadError(std::string(kBoard) + kCamera), "rig.yaml:1: rig is missing");
   EXPECT_EQ(LoadError(std::string(kHead) + kCamera +
                       "board: {width_m: 1, square_m: 0.1, num_corners_x: 4, num_corners_y: 4}\n"),
             "rig.yaml:4: board.height_m is missing");
+}
+
+TEST(LoadRig, NamesWhatFindsAMissingLens) {
+  std::string text = Minimal();
+  text.replace(text.find("fx_px: 500, "), 12, "");
+  EXPECT_EQ(LoadError(text),
+            "rig.yaml:3: camera.fx_px is missing (calibrate_lens finds the camera's numbers from a "
+            "recording of the board)");
+}
+
+LensInRig LensOf(const std::string& text, CameraModel* camera) {
+  const test::TemporaryFolder folder;
+  LensInRig lens;
+  *camera = LoadRig(folder.Write("rig.yaml", text), &lens).camera;
+  return lens;
+}
+
+TEST(LoadRig, TakesACameraWhoseLensIsToBeFound) {
+  CameraModel camera;
+  const std::string board = std::string(kHead) + kBoard;
+  EXPECT_FALSE(LensOf(board, &camera).model);
+  const LensInRig part =
+      LensOf(board + "camera: {lens_model: rational_polynomial, width_px: 640}\n", &camera);
+  EXPECT_EQ(part.model, LensModel::kRational);
+  EXPECT_FALSE(part.camera);
+  EXPECT_EQ(camera.width_px, 640);
+  EXPECT_EQ(camera.height_px, 0);
+  EXPECT_FALSE(LensOf(board + "camera: {lens_model: automatic}\n", &camera).model);
+  const LensInRig whole = LensOf(Minimal(), &camera);
+  EXPECT_EQ(whole.model, LensModel::kPlumbBob);
+  ASSERT_TRUE(whole.camera);
+  EXPECT_EQ(whole.camera->fy_px, 501);
+
+  const auto error = [&](const std::string& lines) {
+    return test::ErrorOf([&] { LensOf(board + lines, &camera); });
+  };
+  EXPECT_THAT(error("camera: {lens_model: round}\n"), HasSubstr("must be automatic, equidistant"));
+  EXPECT_THAT(error("camera: {fx: 3}\n"), HasSubstr("camera.fx is not a known key"));
+  EXPECT_THAT(error("camera: {width_px: wide}\n"), HasSubstr("camera.width_px"));
 }
 
 TEST(LoadRig, ReadsTheLinesOfKalibrsFileAsTheyAre) {

@@ -38,8 +38,9 @@ class CalibrateLens : public ::testing::Test {
 
   /// A still of each place and tilt, so many. Not tilted: each faces the camera.
   std::string WriteLog(int num_poses, bool is_tilted) const {
+    const std::string path = Path(is_tilted ? "board.lcm" : "flat.lcm");
     const CameraModel camera = test::SmallCamera(LensModel::kEquidistant);
-    LogWriter log(Path("board.lcm"));
+    LogWriter log(path);
     for (int i = 0; i < num_poses; ++i) {
       const double turn_rad = 35 * kRadPerDeg * (is_tilted ? 1 : 0);
       const double towards_rad = 2.4 * i;  // the golden angle: no two alike
@@ -51,7 +52,7 @@ class CalibrateLens : public ::testing::Test {
       const cv::Mat image = test::RenderBoard(camera, test::TestBoard(), T_camera_board);
       test::WriteEvent("CAMERA_IMAGE", ToMessage(image, (i + 1) * 2'000'000, i), &log);
     }
-    return Path("board.lcm");
+    return path;
   }
 
   test::Outcome Run(const std::string& log, const std::vector<std::string>& more = {}) const {

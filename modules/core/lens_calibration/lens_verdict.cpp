@@ -50,7 +50,7 @@ bool LacksTilt(const LensCoverage& coverage) { return NumTilted(coverage) < kMin
 std::string HowToTilt(const LensCoverage& coverage) {
   if (!LacksTilt(coverage)) return "take more poses, near ones that fill the image";
   return Format(
-      "only %d of the poses are tilted by 15 degrees or more: tilt the board by 20 to 45 degrees "
+      "%d of the poses are tilted by 15 degrees or more: tilt the board by 20 to 45 degrees "
       "to the left, right, up and down",
       NumTilted(coverage));
 }
@@ -136,22 +136,22 @@ std::vector<std::string> AdviceOf(const LensCalibration& result) {
     advice.push_back("no corner was seen in these parts of the image: " + parts +
                      ": show the board there; the lens is extrapolated");
   }
-  if (LacksTilt(result.coverage)) {
-    advice.push_back(HowToTilt(result.coverage));
-  } else {
-    std::string sides;
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (result.coverage.num_tilted[i] == 0) {
-        sides += (sides.empty() ? "" : ", ") + std::string(kSides[i]);
-      }
-    }
-    if (!sides.empty()) advice.push_back("the board was never turned " + sides + ": turn it so");
-  }
   const double sigma = result.best->fit.scale_sigma;
   if (sigma > kPoorSigma) {
     advice.push_back(
         Format("the focal length is not well determined (1 sigma %.2g %%): ", 100 * sigma) +
         HowToTilt(result.coverage));
+  } else if (LacksTilt(result.coverage)) {
+    advice.push_back(HowToTilt(result.coverage));
+  }
+  std::string sides;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (result.coverage.num_tilted[i] == 0) {
+      sides += (sides.empty() ? "" : ", ") + std::string(kSides[i]);
+    }
+  }
+  if (!sides.empty() && !LacksTilt(result.coverage)) {
+    advice.push_back("the board was never turned " + sides + ": turn it so");
   }
   return advice;
 }

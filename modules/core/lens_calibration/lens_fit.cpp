@@ -176,7 +176,7 @@ bool Solve(const std::vector<std::unique_ptr<ViewErrors>>& errors,
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.max_num_iterations = 200;
+  options.max_num_iterations = 100;
   options.function_tolerance = 1e-12;
   options.parameter_tolerance = 1e-12;
   options.gradient_tolerance = 1e-12;

@@ -59,7 +59,7 @@ TEST(CalibrateLens, RefusesTooFewPoses) {
 TEST(CalibrateLens, RefusesBoardsThatAllFaceTheCamera) {
   const CameraModel truth = test::SmallCamera(LensModel::kPlumbBob);
   test::LensViewsOptions flat;
-  flat.num_views = 16;
+  flat.num_views = 10;
   flat.max_tilt_rad = 0;
   const LensCalibration found = Calibrate(truth, test::MakeLensViews(truth, flat), truth.lens);
   EXPECT_THAT(found.refusal,

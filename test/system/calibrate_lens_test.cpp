@@ -70,6 +70,8 @@ TEST_F(CalibrateLens, WritesARigFileThatOthersTake) {
   const test::Outcome before = test::Run(check);
   EXPECT_EQ(before.status, 1);
   EXPECT_THAT(before.err, HasSubstr("camera.fx_px is missing (calibrate_lens finds"));
+  // It can be recorded with, as tools/record asks.
+  EXPECT_EQ(test::Run({check[0], rig_, "--lcm-url", "--without-lens"}).status, 0);
 
   const test::Outcome outcome = Run(WriteLog(12, true), {"--write", Path("new.yaml")});
   ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;

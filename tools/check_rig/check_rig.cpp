@@ -96,15 +96,19 @@ int main(int argc, char** argv) {
   bool is_url_only = false;
   bool is_channels_only = false;
   bool is_name_only = false;
+  bool may_lack_lens = false;
   app.add_option("rig", path, "The rig file (YAML)")->required();
   app.add_flag("--name", is_name_only, "Print just the rig's name, for scripts");
-  app.add_flag("--lcm-url", is_url_only, "Print just the LCM URL, for scripts");
+  CLI::Option* url = app.add_flag("--lcm-url", is_url_only, "Print just the LCM URL, for scripts");
+  app.add_flag("--without-lens", may_lack_lens, "The camera's numbers may be missing (to record)")
+      ->needs(url);
   app.add_flag(
       "--input-channels",
       is_channels_only,
       "Print just the channels of sensors and operator, as a pattern for lcm-logplayer -e");
   return voqcal::RunTool(&app, argc, argv, [&] {
-    const voqcal::Rig rig = voqcal::LoadRig(path);
+    voqcal::LensInRig lens;
+    const voqcal::Rig rig = may_lack_lens ? voqcal::LoadRig(path, &lens) : voqcal::LoadRig(path);
     if (is_name_only) {
       std::puts(rig.name.c_str());
     } else if (is_url_only) {

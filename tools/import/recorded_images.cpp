@@ -61,11 +61,14 @@ Counts TakeFolder(const std::filesystem::path& folder,
   for (std::size_t i = 0; i < files.size(); i += StepOf(files.size(), max_images)) {
     const std::string bytes = ReadWholeFile(files[i].path);
     const double share = static_cast<double>(i + 1) / static_cast<double>(files.size());
+    image_t message;
     try {
-      Take(EncodedToMessage({bytes.begin(), bytes.end()}, files[i].utime, 0), share, take, &counts);
+      message = EncodedToMessage({bytes.begin(), bytes.end()}, files[i].utime, 0);
     } catch (const std::runtime_error&) {  // neither JPEG nor PNG
       ++counts.num_unreadable;
+      continue;
     }
+    Take(message, share, take, &counts);
   }
   return counts;
 }

@@ -40,6 +40,18 @@ struct SeenBoards {
   std::vector<LensView> views;
 };
 
+void RequireSize(const Rig& rig, const cv::Size& image_px) {
+  const CameraModel& camera = rig.camera;
+  if ((camera.width_px == 0 || camera.width_px == image_px.width) &&
+      (camera.height_px == 0 || camera.height_px == image_px.height)) {
+    return;
+  }
+  throw std::runtime_error(
+      rig.path.string() + ": camera.width_px and height_px are " + std::to_string(camera.width_px) +
+      " x " + std::to_string(camera.height_px) + ", the images are " +
+      std::to_string(image_px.width) + " x " + std::to_string(image_px.height));
+}
+
 SeenBoards SeeBoards(const Rig& rig, const LensArgs& args) {
   SeenBoards seen;
   Progress progress("images");
@@ -47,7 +59,10 @@ SeenBoards SeeBoards(const Rig& rig, const LensArgs& args) {
       args.log, rig.channels.camera_image, args.max_images, [&](const RecordedImage& image) {
         progress.Show(image.share, std::to_string(seen.views.size()) + " boards");
         ++seen.num_images;
-        if (seen.image_px.empty()) seen.image_px = image.grey.size();
+        if (seen.image_px.empty()) {
+          seen.image_px = image.grey.size();
+          RequireSize(rig, seen.image_px);
+        }
         if (image.grey.size() != seen.image_px) {
           ++seen.without["of another size than the first"];
           return;
@@ -65,18 +80,6 @@ SeenBoards SeeBoards(const Rig& rig, const LensArgs& args) {
     return a.utime < b.utime;
   });
   return seen;
-}
-
-void RequireSize(const Rig& rig, const SeenBoards& seen) {
-  const CameraModel& camera = rig.camera;
-  if ((camera.width_px == 0 || camera.width_px == seen.image_px.width) &&
-      (camera.height_px == 0 || camera.height_px == seen.image_px.height)) {
-    return;
-  }
-  throw std::runtime_error(
-      rig.path.string() + ": camera.width_px and height_px are " + std::to_string(camera.width_px) +
-      " x " + std::to_string(camera.height_px) + ", the images are " +
-      std::to_string(seen.image_px.width) + " x " + std::to_string(seen.image_px.height));
 }
 
 void PrintImages(const SeenBoards& seen, const ViewChoice& choice) {
@@ -106,7 +109,6 @@ void CalibrateLensOf(const LensArgs& args) {
   const Rig rig = LoadRig(args.rig, &lens);
   if (!args.written.path.empty()) args.written.Prepare();
   const SeenBoards seen = SeeBoards(rig, args);
-  RequireSize(rig, seen);
   ViewChoiceOptions choice_options;
   choice_options.max_still_motion_px = rig.sample_collector.max_still_motion_px;
   const ViewChoice choice = ChooseViews(seen.views, rig.board, seen.image_px, choice_options);

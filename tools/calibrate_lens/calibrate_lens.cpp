@@ -129,6 +129,7 @@ void CalibrateLensOf(const LensArgs& args) {
   std::printf("for the rig file\ncamera:\n%s", CameraYaml(camera, "  ").c_str());
   if (args.written.path.empty()) return;
   WriteFileAtomically(args.written.path, RigWithCamera(ReadWholeFile(args.rig), camera));
+  LoadRig(args.written.path);  // says what lines could not tell: a key written as "camera :", say
   std::printf("written\n  %s\n", args.written.path.c_str());
 }
 

@@ -98,10 +98,11 @@ std::string LensSummary(const LensCalibration& calibration,
                  best.fit.shift_sigma_px);
   if (given) {
     const HeldOutErrors errors = ErrorsOfLens(*given, board, calibration.views);
-    text += Format("rig file    its intrinsics (%s, fx %.3f) on these images: RMS %.3f px\n",
+    text += Format("rig file    its intrinsics (%s, fx %.3f) on these images: ",
                    ToString(given->lens).c_str(),
-                   given->fx_px,
-                   errors.rms_px);
+                   given->fx_px);
+    text += std::isfinite(errors.rms_px) ? Format("RMS %.3f px\n", errors.rms_px)
+                                         : "no pose explains some of them\n";
   }
   text += CoverageLines(calibration.coverage);
   for (const std::string& advice : calibration.advice) text += "better      " + advice + '\n';

@@ -48,7 +48,8 @@ bool IsTopLevel(const std::string& line) { return !IsBlankOrComment(line) && lin
 
 // What follows a key on its line, without its comment.
 bool HasValueOnItsLine(const std::string& line) {
-  const std::string rest = line.substr(line.find(':') + 1);
+  const std::string value = line.substr(0, line.size() - CommentOf(line).size());
+  const std::string rest = value.substr(value.find(':') + 1);
   return !IsBlankOrComment(rest) &&
          (rest.find('[') == std::string::npos) == (rest.find(']') == std::string::npos);
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/camera_detection/planar_pose.hpp"
-#include "core/format.hpp"
 #include "core/lens_calibration/lens_verdict.hpp"
 #include "core/median.hpp"
 
@@ -58,7 +58,7 @@ std::vector<LensForm> FormsToTry(const std::optional<LensModel>& lens) {
   return lens ? std::vector<LensForm>{WholeForm(*lens)} : LensForms();
 }
 
-/// Views that one lens explains, and it.
+/// Views that one lens explains, and the others.
 struct Agreeing {
   std::vector<LensView> views;
   std::vector<LensView> odd;

@@ -361,7 +361,6 @@ std::optional<LensFit> FitLens(const LensForm& form,
   double sum_px2 = 0;
   std::size_t num_corners = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    // About the solution, where its derivative is PerturbLeft's.
     fit.T_camera_board.push_back(PerturbLeft(T_camera_board[i], poses[i]));
     Eigen::VectorXd residuals(errors[i]->num_residuals());
     const double* parameters[] = {lens.data(), poses[i].data()};

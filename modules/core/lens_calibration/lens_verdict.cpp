@@ -97,7 +97,7 @@ std::string RefusalOf(const LensCalibrationOptions& options, const LensCalibrati
                "the principal point is not determined (1 sigma %.2g px where the boards were, "
                "at most %.2g): ",
                fit.shift_sigma_px,
-               options.max_sigma * fit.camera.fx_px) +
+               options.max_sigma * std::min(fit.camera.fx_px, fit.camera.fy_px)) +
            HowToTilt(coverage);
   }
   if (!std::isfinite(result.best->held_out.rms_px)) {

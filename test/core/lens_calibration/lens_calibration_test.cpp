@@ -40,7 +40,7 @@ TEST(CalibrateLens, LeavesOutAWrongImage) {
   EXPECT_LT(found.best->fit.rms_px, 0.3);
   EXPECT_GT(found.best->held_out.rms_px, found.best->fit.rms_px);
   EXPECT_LT(found.best->held_out.rms_px, 1.2 * found.best->fit.rms_px);
-  // A lens that is wrong by a hundredth predicts worse than the one found.
+  // A lens that is wrong by two hundredths predicts worse than the one found.
   CameraModel wrong = truth;
   wrong.fx_px *= 1.02;
   const double wrong_px = ErrorsOfLens(wrong, test::TestBoard(), found.views).rms_px;

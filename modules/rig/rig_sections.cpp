@@ -142,11 +142,11 @@ void ReadPartOfLens(YamlSection* section, CameraModel* camera, LensInRig* lens) 
     double ignored = 0;
     section->Read(key, &ignored);
   }
-  lens->model = LensModelFromString(model);
-  if (!lens->model && model != "automatic") {
-    section->AddError(
-        "lens_model",
-        "must be automatic, equidistant, plumb_bob or rational (rational_polynomial)");
+  if (model == "automatic") return;
+  if (const auto known = LensModelByName(model)) {
+    lens->model = *known;
+  } else {
+    section->AddError("lens_model", "(unless automatic) " + known.error().rule);
   }
 }
 

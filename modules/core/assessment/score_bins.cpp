@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "core/camera/image_parts.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -25,29 +27,17 @@ std::vector<ScoreBin> Sorted(const std::vector<const BoardSample*>& samples,
   return bins;
 }
 
-int Third(double pixel_px, int size_px) {
-  return std::clamp(static_cast<int>(3 * (pixel_px + 0.5) / size_px), 0, 2);
-}
-
 }  // namespace
 
 std::vector<ScoreBin> BinByImageCell(const std::vector<const BoardSample*>& samples,
                                      const SceneScore& score,
                                      const CameraModel& camera) {
-  const std::vector<std::string> names = {"top left",
-                                          "top",
-                                          "top right",
-                                          "left",
-                                          "middle",
-                                          "right",
-                                          "bottom left",
-                                          "bottom",
-                                          "bottom right"};
+  const auto& parts = ImagePartNames();
+  const std::vector<std::string> names(parts.begin(), parts.end());
   return Sorted(samples, score, names, [&camera](const BoardSample& sample) {
     const Eigen::Vector3d& centre_camera_m = sample.camera.pose.centre_m;
     if (!camera.IsInFront(centre_camera_m)) return -1;
-    const Eigen::Vector2d pixel = camera.Project(centre_camera_m);
-    return 3 * Third(pixel.y(), camera.height_px) + Third(pixel.x(), camera.width_px);
+    return static_cast<int>(ImagePartAt(camera.Project(centre_camera_m), camera));
   });
 }
 

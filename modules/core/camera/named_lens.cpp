@@ -75,13 +75,19 @@ bool IsCountKnown(const std::string& model, LensModel lens, const std::vector<do
 
 }  // namespace
 
+Expected<LensModel, LensRefusal> LensModelByName(const std::string& model) {
+  const auto known = kNames.find(InSmallLetters(model));
+  if (known == kNames.end()) return UnknownModel();
+  return known->second;
+}
+
 Expected<NamedLens, LensRefusal> LensByName(const std::string& model,
                                             const std::vector<double>& distortion) {
-  const std::string name = InSmallLetters(model);
-  const auto known = kNames.find(name);
-  if (known == kNames.end()) return UnknownModel();
-  NamedLens named{known->second, {}};
-  if (!IsCountKnown(name, named.lens, distortion)) return WrongCount(model, named.lens);
+  const auto known = LensModelByName(model);
+  if (!known) return known.error();
+  NamedLens named{*known, {}};
+  if (!IsCountKnown(InSmallLetters(model), named.lens, distortion))
+    return WrongCount(model, named.lens);
   const std::size_t num_used = NumUsed(distortion);
   if (num_used > named.distortion.size()) return PrismOrTilt();
   // Five coefficients and more of them are the rational lens, however it is called.

@@ -21,6 +21,9 @@ struct LensRefusal {
   std::string rule;                 ///< "must be ...", with what to do.
 };
 
+/// The model alone, where its coefficients are not known yet: by the names below.
+Expected<LensModel, LensRefusal> LensModelByName(const std::string& model);
+
 /// The lens that a calibration speaks of, by the names and the coefficients of ROS, OpenCV and
 /// Kalibr (radtan and equidistant of 4; plumb_bob of 4, 5, 8, 12 or 14, of which those of the thin
 /// prism and the tilt must be zero). What is another lens is refused with how to convert it.

@@ -7,6 +7,7 @@
 #include "core/camera_detection/planar_pose.hpp"
 #include "core/lens_calibration/lens_verdict.hpp"
 #include "core/median.hpp"
+#include "core/problems.hpp"
 
 namespace voqcal {
 namespace {
@@ -167,10 +168,21 @@ std::optional<LensTrial> SimplestGood(const std::vector<LensTrial>& trials) {
 
 }  // namespace
 
+std::vector<std::string> LensCalibrationOptions::Problems() const {
+  ProblemList problems;
+  problems.Require(min_views >= 2, "min_views must be at least 2", min_views);
+  problems.Require(max_view_ratio >= 1, "max_view_ratio must be at least 1", max_view_ratio);
+  problems.Require(num_groups >= 2, "num_groups must be at least 2", num_groups);
+  problems.RequirePositive("max_rms_px", max_rms_px);
+  problems.RequirePositive("max_sigma", max_sigma);
+  return problems.lines();
+}
+
 LensCalibration CalibrateLens(const std::vector<LensView>& views,
                               const BoardSpec& board,
                               const cv::Size& image_px,
                               const LensCalibrationOptions& options) {
+  RequireUsable("LensCalibrationOptions", options.Problems());
   LensCalibration result;
   result.views = views;
   const Points corners_board_m = board.InnerCornersBoardM();

@@ -10,6 +10,7 @@
 #include <opencv2/core/types.hpp>
 
 #include "core/board/board_spec.hpp"
+#include "core/camera/image_parts.hpp"
 #include "core/lens_calibration/lens_fit.hpp"
 #include "core/lens_calibration/lens_view.hpp"
 
@@ -25,6 +26,9 @@ struct LensCalibrationOptions {
   /// 1 sigma of scale and shift where the boards were, as a share of the focal length: 10 mm a
   /// metre.
   double max_sigma = 0.01;
+
+  /// One line for each broken constraint, with its value; empty if the options are usable.
+  std::vector<std::string> Problems() const;
 };
 
 /// How well a lens predicts views that it was not fitted to: each with its own pose.
@@ -41,8 +45,8 @@ struct LensTrial {
 
 /// Where the corners were, and how the boards were held.
 struct LensCoverage {
-  std::array<int, 9> num_corners{};  ///< By part of the image, row by row.
-  double least_tilt_rad = 0.0;       ///< Of a board against the image plane.
+  std::array<int, kNumImageParts> num_corners{};  ///< By part of the image, row by row.
+  double least_tilt_rad = 0.0;                    ///< Of a board against the image plane.
   double most_tilt_rad = 0.0;
   /// Boards tilted by 15 degrees or more whose face looks left, right, up, down.
   std::array<int, 4> num_tilted{};
@@ -63,6 +67,7 @@ struct LensCalibration {
 
 /// The lens by which the board fell on the images as it did: of one model, or of the simplest form
 /// whose held-out error is within a standard error of the best one's.
+/// @throws std::invalid_argument if `options` has Problems().
 LensCalibration CalibrateLens(const std::vector<LensView>& views,
                               const BoardSpec& board,
                               const cv::Size& image_px,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/camera/image_parts.hpp"
 #include "core/format.hpp"
 #include "core/units.hpp"
 
@@ -19,12 +20,7 @@ LensCoverage CoverageOf(const LensFit& fit, const std::vector<LensView>& views) 
   for (const LensView& view : views) {
     for (const Eigen::Vector2d& corner_px : view.corners_px) {
       if (!corner_px.allFinite()) continue;
-      const auto third = [](double at_px, int size_px) {
-        return std::clamp(static_cast<int>(3 * (at_px + 0.5) / size_px), 0, 2);
-      };
-      ++coverage
-            .num_corners[static_cast<std::size_t>(3 * third(corner_px.y(), fit.camera.height_px) +
-                                                  third(corner_px.x(), fit.camera.width_px))];
+      ++coverage.num_corners[ImagePartAt(corner_px, fit.camera)];
     }
   }
   coverage.least_tilt_rad = M_PI;
@@ -115,21 +111,12 @@ std::string RefusalOf(const LensCalibrationOptions& options, const LensCalibrati
 }
 
 std::vector<std::string> AdviceOf(const LensCalibration& result) {
-  static const char* const kParts[] = {"top left",
-                                       "top",
-                                       "top right",
-                                       "left",
-                                       "middle",
-                                       "right",
-                                       "bottom left",
-                                       "bottom",
-                                       "bottom right"};
   static const char* const kSides[] = {"left", "right", "up", "down"};
   std::vector<std::string> advice;
   std::string parts;
-  for (std::size_t i = 0; i < 9; ++i) {
+  for (std::size_t i = 0; i < kNumImageParts; ++i) {
     if (result.coverage.num_corners[i] == 0) {
-      parts += (parts.empty() ? "" : ", ") + std::string(kParts[i]);
+      parts += (parts.empty() ? "" : ", ") + ImagePartNames()[i];
     }
   }
   if (!parts.empty()) {

@@ -1,5 +1,7 @@
 #include "core/lens_calibration/lens_calibration.hpp"
 
+#include <stdexcept>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -72,7 +74,15 @@ TEST(CalibrateLens, RefusesWhatNoLensExplains) {
   noisy.num_views = 10;
   noisy.noise_px = 3;
   const LensCalibration found = Calibrate(truth, test::MakeLensViews(truth, noisy), truth.lens);
-  EXPECT_NE(found.refusal, "");
+  EXPECT_THAT(found.refusal, HasSubstr("the RMS is"));
+}
+
+TEST(CalibrateLens, NamesBadOptions) {
+  LensCalibrationOptions options;
+  options.num_groups = 1;
+  options.max_sigma = 0;
+  EXPECT_THAT(options.Problems(), testing::SizeIs(2));
+  EXPECT_THROW(CalibrateLens({}, test::TestBoard(), {640, 480}, options), std::invalid_argument);
 }
 
 TEST(CalibrateLens, NamesThePartsOfTheImageWithoutACorner) {

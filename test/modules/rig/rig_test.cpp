@@ -223,6 +223,7 @@ TEST(LoadRig, TakesACameraWhoseLensIsToBeFound) {
   EXPECT_EQ(camera.width_px, 640);
   EXPECT_EQ(camera.height_px, 0);
   EXPECT_FALSE(LensOf(board + "camera: {lens_model: automatic}\n", &camera).model);
+  EXPECT_EQ(LensOf(board + "camera: {lens_model: radtan}\n", &camera).model, LensModel::kPlumbBob);
   const LensInRig whole = LensOf(Minimal(), &camera);
   EXPECT_EQ(whole.model, LensModel::kPlumbBob);
   ASSERT_TRUE(whole.camera);
@@ -231,7 +232,9 @@ TEST(LoadRig, TakesACameraWhoseLensIsToBeFound) {
   const auto error = [&](const std::string& lines) {
     return test::ErrorOf([&] { LensOf(board + lines, &camera); });
   };
-  EXPECT_THAT(error("camera: {lens_model: round}\n"), HasSubstr("must be automatic, equidistant"));
+  EXPECT_THAT(
+      error("camera: {lens_model: round}\n"),
+      HasSubstr("lens_model (unless automatic) must be equidistant, plumb_bob or rational"));
   EXPECT_THAT(error("camera: {fx: 3}\n"), HasSubstr("camera.fx is not a known key"));
   EXPECT_THAT(error("camera: {width_px: wide}\n"), HasSubstr("camera.width_px"));
 }

@@ -100,7 +100,7 @@ extrinsic_refined_t ToMessage(const BestExtrinsic& best,
   message.range_noise_m = likelihood.noise.range_m;
   const SightingErrors& errors = likelihood.noise.errors;
   message.along_ray_error_m = errors.along_ray_m;
-  message.across_ray_error_m = errors.across_ray_m;
+  message.across_ray_error_m = errors.level_m;
   message.tilt_error_rad = errors.tilt_rad;
   message.turn_error_rad = errors.turn_rad;
   return message;
@@ -122,6 +122,7 @@ BestExtrinsic FromMessage(const extrinsic_refined_t& message) {
   best.likelihood.bias = FromMessage(message.lidar_bias);
   best.likelihood.noise = {message.range_noise_m,
                            {message.along_ray_error_m,
+                            message.across_ray_error_m,
                             message.across_ray_error_m,
                             message.tilt_error_rad,
                             message.turn_error_rad}};

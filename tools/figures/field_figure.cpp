@@ -68,9 +68,11 @@ void Print(const FieldSet& set, bool is_verbose) {
     std::puts("");
   }
   std::printf(
-      "  beyond their covariances: %.1f mm along the ray, %.1f across, tilt %.2f deg, turn %.2f\n",
+      "  beyond their covariances: %.1f mm along the ray, across it %.1f level and %.1f "
+      "upright, tilt %.2f deg, turn %.2f\n",
       kMmPerM * set.errors.along_ray_m,
-      kMmPerM * set.errors.across_ray_m,
+      kMmPerM * set.errors.level_m,
+      kMmPerM * set.errors.upright_m,
       kDegPerRad * set.errors.tilt_rad,
       kDegPerRad * set.errors.turn_rad);
   std::printf("  %s\n", set.counts.c_str());

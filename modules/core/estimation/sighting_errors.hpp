@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "core/board/board_sample.hpp"
 #include "core/geometry/rigid.hpp"
@@ -12,23 +13,37 @@ namespace voqcal {
 /// Ranges that are off by angle and shade, a bent board, an outline that is not cut square, the
 /// lens model's error at that place, the time between the two frames.
 struct SightingErrors {
-  double along_ray_m = 0.0;   ///< Of the centre, along the camera's ray.
-  double across_ray_m = 0.0;  ///< Of the centre, in each direction across it.
-  double tilt_rad = 0.0;      ///< Of the normal, in each direction.
-  double turn_rad = 0.0;      ///< About the normal.
+  double along_ray_m = 0.0;  ///< Of the centre, along the camera's ray.
+  /// Of the centre, across the ray and the lidar's z: along the scan lines of a lidar that turns
+  /// about it. Time between the two frames shows here, and how the beam's width moves upright
+  /// edges.
+  double level_m = 0.0;
+  double upright_m = 0.0;  ///< Of the centre, across the ray and that.
+  double tilt_rad = 0.0;   ///< Of the normal, in each direction.
+  double turn_rad = 0.0;   ///< About the normal.
 
   /// Of [rotation_rad; translation_m] of one board, camera axes.
-  Matrix6d CovarianceOf(const BoardPose& pose_camera) const;
+  Matrix6d CovarianceOf(const BoardPose& pose_camera, const Eigen::Matrix3d& R_camera_lidar) const;
 };
 
-/// Of SightingErrors, in its order.
-using SightingVariances = std::array<double, 4>;
+/// The variances of SightingErrors, in its order.
+enum SightingError : std::size_t {
+  kAlongRayError,
+  kLevelError,
+  kUprightError,
+  kTiltError,
+  kTurnError,
+  kNumSightingErrors
+};
+using SightingVariances = std::array<double, kNumSightingErrors>;
 SightingVariances SquaresOf(const SightingErrors& errors);
 SightingErrors RootsOf(const SightingVariances& variances);
 
 /// By order of magnitude what boards of real rigs show (`voqcal_figures field --verbose`): normals
 /// of a biased lidar are off by about a degree, ranges by one or two centimetres.
-constexpr SightingErrors kPriorErrors{0.02, 0.005, 0.02, 0.005};
+constexpr SightingErrors kPriorErrors{0.02, 0.005, 0.005, 0.02, 0.005};
+/// How many observations each of these counts for: the two across the ray together for one.
+constexpr SightingVariances kPriorWeights{1.0, 0.5, 0.5, 1.0, 1.0};
 
 /// What the sightings of a session share, so that no number of them averages it out.
 struct SharedErrors {
@@ -44,6 +59,7 @@ struct SharedErrors {
 constexpr SharedErrors kPriorSharedErrors{0.03, 0.002, 0.001};
 
 /// How one board's covariance grows with the square of each error, in the order of the struct.
-std::array<Matrix6d, 4> UnitCovariances(const BoardPose& pose_camera);
+std::array<Matrix6d, kNumSightingErrors> UnitCovariances(const BoardPose& pose_camera,
+                                                         const Eigen::Matrix3d& R_camera_lidar);
 
 }  // namespace voqcal

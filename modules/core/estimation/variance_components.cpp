@@ -80,7 +80,7 @@ void Minimise(const std::vector<const BoardSample*>& samples,
 // One board's difference without any error of its own, and how each error widens it.
 struct Sighting {
   MixedDifference difference;
-  std::array<Matrix6d, 4> units;
+  std::array<Matrix6d, kNumSightingErrors> units;
 
   Matrix6d Weight(const SightingVariances& variances) const {
     Matrix6d V = difference.C;
@@ -95,7 +95,8 @@ std::vector<Sighting> SightingsAt(const std::vector<const BoardSample*>& samples
   fit.errors = {};
   std::vector<Sighting> sightings;
   for (const BoardSample* sample : samples) {
-    sightings.push_back({DifferenceOf(*sample, camera, fit), UnitCovariances(sample->camera.pose)});
+    sightings.push_back({DifferenceOf(*sample, camera, fit),
+                         UnitCovariances(sample->camera.pose, fit.T_camera_lidar.linear())});
   }
   return sightings;
 }
@@ -103,7 +104,7 @@ std::vector<Sighting> SightingsAt(const std::vector<const BoardSample*>& samples
 // One step towards the maximum. With r, V, J of all sightings stacked and
 //     P = V^-1 - V^-1 J (J' V^-1 J)^-1 J' V^-1
 // a variance v whose unit is U goes to
-//     sqrt((v^2 r'P U P r + s^2) / (tr(P U) + 1 / v)),   s^2: its prior's
+//     sqrt((v^2 r'P U P r + w s^2) / (tr(P U) + w / v)),   s^2: its prior's, which weighs w
 SightingVariances Step(const std::vector<Sighting>& sightings,
                        const MixedFit& fit,
                        const SightingVariances& v,
@@ -129,7 +130,8 @@ SightingVariances Step(const std::vector<Sighting>& sightings,
   }
   SightingVariances next{};
   for (std::size_t k = 0; k < v.size(); ++k) {
-    next[k] = std::sqrt((v[k] * v[k] * squares[k] + prior[k]) / (traces[k] + 1.0 / v[k]));
+    const double w = kPriorWeights[k];
+    next[k] = std::sqrt((v[k] * v[k] * squares[k] + w * prior[k]) / (traces[k] + w / v[k]));
   }
   return next;
 }
@@ -143,7 +145,7 @@ MixedDifference DifferenceOf(const BoardSample& sample,
   const auto J_shared = BySharedErrors(sample.lidar.pose.centre_m, fit.T_camera_lidar.linear());
   MixedDifference difference;
   difference.r = plain.r + J_shared * ToVector(fit.shared);
-  difference.C = plain.C + fit.errors.CovarianceOf(sample.camera.pose);
+  difference.C = plain.C + fit.errors.CovarianceOf(sample.camera.pose, fit.T_camera_lidar.linear());
   difference.J << plain.J, J_shared;
   return difference;
 }

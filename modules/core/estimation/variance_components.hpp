@@ -42,15 +42,15 @@ MixedDifference DifferenceOf(const BoardSample& sample,
 MixedMatrix MixedPriorInformation();
 
 /// What the session's boards disagree by beyond their own covariances, as variance components: each
-/// sighting has random errors of four kinds (SightingErrors), of the same size in all sightings,
+/// sighting has random errors of five kinds (SightingErrors), of the same size in all sightings,
 /// and all have the SharedErrors. Restricted maximum likelihood, so that the unknowns of the
 /// session are not mistaken for agreement (Patterson and Thompson 1971, "Recovery of inter-block
 /// information when block sizes are unequal", Biometrika 58), by the multiplicative steps of Zhou
 /// et al. 2019, "MM algorithms for variance components models", J. Comp. Graph. Stat. 28: monotone,
 /// and never negative.
 ///
-/// Each variance has a prior that counts as one more observation (kPriorErrors): it decides where a
-/// few samples cannot tell, and hardly matters among many.
+/// Each variance has a prior (kPriorErrors) that counts as one more observation or half of one
+/// (kPriorWeights): it decides where a few samples cannot tell, and hardly matters among many.
 /// @return a fit that is not usable where the poses leave the extrinsic open.
 MixedFit FitWithErrors(const std::vector<const BoardSample*>& samples,
                        const CameraModel& camera,

@@ -121,7 +121,8 @@ Matrix6d CameraCovariance(const LikelihoodPose& pose, const LikelihoodNoise& noi
   covariance.diagonal().head<3>().array() += kLeastTurnRad * kLeastTurnRad;
   covariance.diagonal().tail<3>().array() += kLeastAcrossM * kLeastAcrossM;
   // Across the ray and about the normal the pixels hold the board.
-  const auto& [along_ray_m, across_ray_m, tilt_rad, turn_rad] = noise.errors;
+  const double along_ray_m = noise.errors.along_ray_m;
+  const double tilt_rad = noise.errors.tilt_rad;
   const Eigen::Vector3d ray = pose.T_camera_board.translation().normalized();
   const Eigen::Vector3d normal = pose.T_camera_board.linear().col(2);
   covariance.bottomRightCorner<3, 3>() += along_ray_m * along_ray_m * ray * ray.transpose();
@@ -132,7 +133,7 @@ Matrix6d CameraCovariance(const LikelihoodPose& pose, const LikelihoodNoise& noi
 
 Eigen::Matrix3d OutlineCovariance(const LikelihoodPose& pose, const LikelihoodNoise& noise) {
   Eigen::Matrix3d covariance = pose.outline.covariance;
-  covariance.diagonal().head<2>().array() += noise.errors.across_ray_m * noise.errors.across_ray_m;
+  covariance.diagonal().head<2>().array() += noise.errors.level_m * noise.errors.level_m;
   covariance(2, 2) += noise.errors.turn_rad * noise.errors.turn_rad;
   return covariance;
 }

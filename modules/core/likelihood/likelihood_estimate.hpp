@@ -17,8 +17,8 @@ namespace voqcal {
 /// Noise levels that the residuals show; as they start, where there are no residuals.
 struct LikelihoodNoise {
   double range_m = 0.01;  ///< 1 sigma of one return along its ray.
-  /// Of each sighting, once the lidar's faults are taken out.
-  SightingErrors errors{0.003, 0.001, 0.005, 0.003};
+  /// Of each sighting, once the lidar's faults are taken out; across the ray alike both ways.
+  SightingErrors errors{0.003, 0.001, 0.001, 0.005, 0.003};
 };
 
 /// How far the extrinsic may be off, 1 sigma of [rotation_rad; translation_m] perturbed on the left

@@ -15,6 +15,7 @@ namespace {
 SightingErrors PriorErrors(const LikelihoodOptions& options) {
   return {options.camera_error_m,
           options.outline_error_m,
+          options.outline_error_m,
           options.camera_error_rad,
           options.outline_error_rad};
 }
@@ -85,10 +86,10 @@ void AddChessboard(const LikelihoodPose& pose,
   const Eigen::Vector3d normal = pose.T_camera_board.linear().col(2);
   const Eigen::Vector3d turn = left.Pr.head<3>();
   const Eigen::Matrix3d P_turn = left.P.topLeftCorner<3, 3>();
-  evidence->squares[0] += std::pow(ray.dot(left.Pr.tail<3>()), 2);
-  evidence->traces[0] += ray.dot(left.P.bottomRightCorner<3, 3>() * ray);
-  evidence->squares[2] += turn.squaredNorm() - std::pow(normal.dot(turn), 2);
-  evidence->traces[2] += P_turn.trace() - normal.dot(P_turn * normal);
+  evidence->squares[kAlongRayError] += std::pow(ray.dot(left.Pr.tail<3>()), 2);
+  evidence->traces[kAlongRayError] += ray.dot(left.P.bottomRightCorner<3, 3>() * ray);
+  evidence->squares[kTiltError] += turn.squaredNorm() - std::pow(normal.dot(turn), 2);
+  evidence->traces[kTiltError] += P_turn.trace() - normal.dot(P_turn * normal);
 }
 
 void AddOutline(const LikelihoodPose& pose,
@@ -107,10 +108,13 @@ void AddOutline(const LikelihoodPose& pose,
                      by_shared,
                      OutlineCovariance(pose, noise).inverse(),
                      board);
-  evidence->squares[1] += left.Pr.head<2>().squaredNorm();
-  evidence->traces[1] += left.P.topLeftCorner<2, 2>().trace();
-  evidence->squares[3] += left.Pr[2] * left.Pr[2];
-  evidence->traces[3] += left.P(2, 2);
+  evidence->squares[kLevelError] += left.Pr.head<2>().squaredNorm();
+  evidence->traces[kLevelError] += left.P.topLeftCorner<2, 2>().trace();
+  // The scan lines' errors are among the faults: what is left is alike both ways.
+  evidence->squares[kUprightError] = evidence->squares[kLevelError];
+  evidence->traces[kUprightError] = evidence->traces[kLevelError];
+  evidence->squares[kTurnError] += left.Pr[2] * left.Pr[2];
+  evidence->traces[kTurnError] += left.P(2, 2);
 }
 
 // One step, as in FitWithErrors, the prior counting as a tenth of an observation: it keeps few

@@ -31,12 +31,13 @@ std::vector<BoardSample> Session(int num_samples,
     sample.lidar.pose.covariance = variances.asDiagonal();
     BoardPose& pose = sample.camera.pose;
     const Eigen::Vector3d ray = pose.centre_m.normalized();
+    const Eigen::Vector3d level = test::TestExtrinsic().linear().col(2).cross(ray).normalized();
     const Eigen::Vector3d chance = random.NormalVector();
-    const Eigen::Vector3d other = random.NormalVector();
     Vector6d error;
     error << errors.tilt_rad * (chance - chance.dot(pose.normal) * pose.normal) +
                  errors.turn_rad * random.Normal() * pose.normal,
-        errors.across_ray_m * (other - other.dot(ray) * ray) +
+        errors.level_m * random.Normal() * level +
+            errors.upright_m * random.Normal() * ray.cross(level) +
             errors.along_ray_m * random.Normal() * ray;
     pose = PoseFromTransform(PerturbLeft(TransformFromPose(pose), error), test::TestBoard());
   }
@@ -48,12 +49,13 @@ MixedFit FitOf(const std::vector<BoardSample>& samples) {
 }
 
 TEST(FitWithErrors, RecoversTheErrorsOfSightings) {
-  const SightingErrors truth{0.025, 0.008, 0.02, 0.006};
+  const SightingErrors truth{0.025, 0.008, 0.004, 0.02, 0.006};
   const MixedFit mixed = FitOf(Session(80, truth, 1));
   ASSERT_TRUE(mixed.is_usable);
   // Of 80 independent values a deviation is known to 8 %, of twice as many to 6; allow 3 sigma.
   EXPECT_NEAR(mixed.errors.along_ray_m, truth.along_ray_m, 0.24 * truth.along_ray_m);
-  EXPECT_NEAR(mixed.errors.across_ray_m, truth.across_ray_m, 0.18 * truth.across_ray_m);
+  EXPECT_NEAR(mixed.errors.level_m, truth.level_m, 0.24 * truth.level_m);
+  EXPECT_NEAR(mixed.errors.upright_m, truth.upright_m, 0.24 * truth.upright_m);
   EXPECT_NEAR(mixed.errors.tilt_rad, truth.tilt_rad, 0.18 * truth.tilt_rad);
   EXPECT_NEAR(mixed.errors.turn_rad, truth.turn_rad, 0.24 * truth.turn_rad);
 }
@@ -63,14 +65,15 @@ TEST(FitWithErrors, FindsLittleWhereCovariancesAreHonest) {
   ASSERT_TRUE(mixed.is_usable);
   // What a prior of one observation, ten times the noise along the ray, leaves among 80.
   EXPECT_LT(mixed.errors.along_ray_m, 2.0 * kCentreSigmaM);
-  EXPECT_LT(mixed.errors.across_ray_m, 1.0 * kCentreSigmaM);
+  EXPECT_LT(mixed.errors.level_m, 1.0 * kCentreSigmaM);
+  EXPECT_LT(mixed.errors.upright_m, 1.0 * kCentreSigmaM);
   EXPECT_LT(mixed.errors.tilt_rad, 2.0 * kRotationSigmaRad);
   EXPECT_LT(mixed.errors.turn_rad, 1.0 * kRotationSigmaRad);
 }
 
 TEST(FitWithErrors, DoesNotTakeTheExtrinsicsUnknownsForAgreement) {
   // Four boards, whose six unknowns bend to them: restricted likelihood allows for that.
-  const SightingErrors truth{0.02, 0.005, 0.02, 0.005};
+  const SightingErrors truth{0.02, 0.005, 0.005, 0.02, 0.005};
   constexpr int kRuns = 40;
   double sum_squares = 0.0;
   for (std::uint32_t seed = 1; seed <= kRuns; ++seed) {
@@ -83,7 +86,8 @@ TEST(FitWithErrors, DoesNotTakeTheExtrinsicsUnknownsForAgreement) {
 }
 
 TEST(FitWithErrors, WeighsSightingsByTheirErrors) {
-  const SightingErrors truth{0.03, 0.001, 0.001, 0.001};  // along the ray the centre says little
+  const SightingErrors truth{
+      0.03, 0.001, 0.001, 0.001, 0.001};  // along the ray the centre says little
   double sum_plain_m2 = 0.0;
   double sum_mixed_m2 = 0.0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
@@ -103,13 +107,25 @@ TEST(FitWithErrors, IsNotUsableWhereTheExtrinsicIsOpen) {
   EXPECT_FALSE(FitWithErrors({}, test::TestCamera(), test::TestExtrinsic()).is_usable);
 }
 
-TEST(SightingErrors, WidenAlongTheRayAndAboutTheNormal) {
+TEST(SightingErrors, WidenAlongTheRayAcrossItAndAboutTheNormal) {
   BoardPose pose;
   pose.centre_m = {0, 0, 2};
   pose.normal = {0, 0, -1};
+  Eigen::Matrix3d R_camera_lidar;  // lidar x forward, z up: level is the camera's x
+  R_camera_lidar << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   Vector6d expected;
-  expected << 9, 9, 16, 4, 4, 1;
-  EXPECT_TRUE((SightingErrors{1, 2, 3, 4}.CovarianceOf(pose).diagonal().isApprox(expected)));
+  expected << 16, 16, 25, 4, 9, 1;
+  const Matrix6d covariance = SightingErrors{1, 2, 3, 4, 5}.CovarianceOf(pose, R_camera_lidar);
+  EXPECT_TRUE(covariance.diagonal().isApprox(expected));
+}
+
+TEST(SightingErrors, AreAllCountedWhereTheRayIsTheLidarsAxis) {
+  BoardPose pose;
+  pose.centre_m = {0, 0, 2};
+  pose.normal = {0, 0, -1};
+  const Matrix6d covariance =
+      SightingErrors{1, 2, 2, 4, 5}.CovarianceOf(pose, Eigen::Matrix3d::Identity());
+  EXPECT_NEAR(covariance.trace(), 4 + 4 + 1 + 16 + 16 + 25, 1e-9);
 }
 
 }  // namespace

@@ -1,9 +1,16 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
 
+#include "core/parallel.hpp"
 #include "messaging/log.hpp"
 #include "voqcal/image_t.hpp"
 #include "voqcal/pointcloud2_t.hpp"
@@ -48,5 +55,32 @@ class SessionSceneReader {
   std::filesystem::path path_;
   LogReader reader_;
 };
+
+/// Calls `work` for each scene for which `is_wanted` says so, one a core at a time: it must not
+/// matter which comes first. Of a log that is damaged somewhere, the scenes before that are done.
+/// @throws as SessionSceneReader, and what `work` throws.
+template <typename IsWanted, typename Work>
+void ForEachScene(const std::filesystem::path& samples_log,
+                  const IsWanted& is_wanted,
+                  const Work& work) {
+  const std::size_t num_at_once = std::max(1U, std::thread::hardware_concurrency());
+  SessionSceneReader reader(samples_log);
+  bool is_at_end = false;
+  while (!is_at_end) {
+    std::vector<SessionScene> scenes;
+    std::exception_ptr damage;
+    try {
+      while (scenes.size() < num_at_once && !is_at_end) {
+        std::optional<SessionScene> scene = reader.Next();
+        is_at_end = !scene;
+        if (scene && is_wanted(*scene)) scenes.push_back(std::move(*scene));
+      }
+    } catch (...) {
+      damage = std::current_exception();
+    }
+    ParallelFor(scenes.size(), [&](std::size_t i) { work(scenes[i]); });
+    if (damage) std::rethrow_exception(damage);
+  }
+}
 
 }  // namespace voqcal

@@ -3,7 +3,9 @@
 #include <exception>
 #include <iterator>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -31,27 +33,37 @@ std::vector<SceneView> SessionViews::Of(const std::vector<const BoardSample*>& s
 }
 
 void SessionViews::ReadNew(const std::map<Key, const BoardSample*>& samples) {
+  const auto key_of = [](const SessionScene& scene) {
+    return Key(scene.sample_id, scene.sweep.utime);
+  };
+  const auto is_new = [&](const SessionScene& scene) {
+    return samples.count(key_of(scene)) != 0 && views_.count(key_of(scene)) == 0;
+  };
+  std::mutex adding;
   try {
-    SessionSceneReader reader(samples_log_);
-    while (const std::optional<SessionScene> scene = reader.Next()) {
-      const auto sample = samples.find({scene->sample_id, scene->sweep.utime});
-      if (sample == samples.end() || views_.count(sample->first) != 0) continue;
-      Add(*scene, sample->first, *sample->second);
-    }
+    ForEachScene(samples_log_, is_new, [&](const SessionScene& scene) {
+      const Key key = key_of(scene);
+      std::optional<SceneView> view = ViewOf(scene, *samples.at(key));
+      if (!view) return;
+      const std::lock_guard<std::mutex> lock(adding);
+      views_[key] = std::move(*view);
+    });
   } catch (const std::exception& error) {
     spdlog::warn("the scene check goes without what follows: {}", error.what());
   }
 }
 
-void SessionViews::Add(const SessionScene& scene, const Key& key, const BoardSample& sample) {
+std::optional<SceneView> SessionViews::ViewOf(const SessionScene& scene,
+                                              const BoardSample& sample) const {
   try {
-    views_[key] = MakeSceneView(
+    return MakeSceneView(
         FromMessage(scene.sweep), FromMessage(scene.image), sample, board_, camera_, options_);
   } catch (const std::exception& error) {
     spdlog::warn("{}: the scene of sample {} is left out: {}",
                  samples_log_.string(),
                  scene.sample_id,
                  error.what());
+    return std::nullopt;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,7 @@
 namespace voqcal {
 
 /// The edges of each sample's scene, taken from the session's samples.lcm: one sweep and one image
-/// in memory at a time, each worked on once.
+/// a core in memory at a time, each worked on once.
 class SessionViews {
  public:
   SessionViews(const BoardSpec& board,
@@ -33,7 +34,7 @@ class SessionViews {
   using Key = std::pair<std::int64_t, std::int64_t>;  // id, utime
 
   void ReadNew(const std::map<Key, const BoardSample*>& samples);
-  void Add(const SessionScene& scene, const Key& key, const BoardSample& sample);
+  std::optional<SceneView> ViewOf(const SessionScene& scene, const BoardSample& sample) const;
 
   BoardSpec board_;
   CameraModel camera_;

@@ -59,6 +59,12 @@ void DrawPoints(const PointCloud& cloud_lidar_m,
                 double radius_px,
                 cv::Mat* picture) {
   const int radius = static_cast<int>(radius_px * (1 << kSubPixelBits));
+  // Where a point shows: the picture and a little about it.
+  const int margin = radius + (2 << kSubPixelBits);
+  const cv::Rect drawn(-margin,
+                       -margin,
+                       (picture->cols << kSubPixelBits) + 2 * margin,
+                       (picture->rows << kSubPixelBits) + 2 * margin);
   for (const LidarPoint& point : cloud_lidar_m.points) {
     if (!point.position_m.allFinite() || point.position_m.isZero()) continue;
     const Eigen::Vector3d p_lidar_m = point.position_m.cast<double>();
@@ -66,8 +72,10 @@ void DrawPoints(const PointCloud& cloud_lidar_m,
     if (!camera.IsInFront(p_camera_m)) continue;
     const Eigen::Vector2d pixel_px = camera.Project<double>(p_camera_m);
     if (!camera.Contains(pixel_px)) continue;
+    const cv::Point at = view.ToFixed(pixel_px);
+    if (!drawn.contains(at)) continue;
     cv::circle(*picture,
-               view.ToFixed(pixel_px),
+               at,
                radius,
                ToScalar(RangeColourBgr(p_lidar_m.norm())),
                cv::FILLED,
@@ -193,22 +201,22 @@ void WriteOverlays(const Rig& rig,
   std::map<std::int64_t, const BoardSample*> samples;
   const std::vector<BoardSample> all = run.SamplesAsChosen();
   for (const BoardSample& sample : all) samples[sample.id] = &sample;
-  SessionSceneReader reader(samples_log);
-  while (const std::optional<SessionScene> messages = reader.Next()) {
-    const auto sample = samples.find(messages->sample_id);
-    if (sample == samples.end()) continue;  // discarded later
-    const cv::Mat image = FromMessage(messages->image);
-    const PointCloud sweep_lidar_m = FromMessage(messages->sweep);
-    const PosePicture scene{*sample->second, image, sweep_lidar_m};
+  const auto is_kept = [&](const SessionScene& scene) {
+    return samples.count(scene.sample_id) != 0;  // others were discarded later
+  };
+  ForEachScene(samples_log, is_kept, [&](const SessionScene& messages) {
+    const cv::Mat image = FromMessage(messages.image);
+    const PointCloud sweep_lidar_m = FromMessage(messages.sweep);
+    const PosePicture scene{*samples.at(messages.sample_id), image, sweep_lidar_m};
     char id[24];
-    std::snprintf(id, sizeof(id), "%04lld", static_cast<long long>(sample->first));
+    std::snprintf(id, sizeof(id), "%04lld", static_cast<long long>(messages.sample_id));
     const auto write = [&](const char* kind, const cv::Mat& picture) {
       if (!picture.empty()) WritePicture(picture, folder / (std::string(id) + kind + ".jpg"));
     };
     write("_scene", DrawScene(scene, rig.camera, result.T_camera_lidar));
     write("_before", DrawBoard(scene, rig.camera, result.averaged.T_camera_lidar));
     write("_after", DrawBoard(scene, rig.camera, result.T_camera_lidar));
-  }
+  });
 }
 
 }  // namespace voqcal

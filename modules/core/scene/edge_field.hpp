@@ -14,6 +14,8 @@ class EdgeField {
  public:
   static constexpr double kNothingSeen = 1.0;
 
+  EdgeField() = default;  ///< Of no image: nothing is seen anywhere.
+
   /// @param blur_px  1 sigma, of the reduced image.
   EdgeField(const SceneView& view, double blur_px);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -49,9 +51,8 @@ std::vector<SceneEdge> SceneEdgesInView(const std::vector<SceneView>& views,
 }
 
 std::vector<EdgeField> MakeEdgeFields(const std::vector<SceneView>& views, double blur_px) {
-  std::vector<EdgeField> fields;
-  fields.reserve(views.size());
-  for (const SceneView& view : views) fields.emplace_back(view, blur_px);
+  std::vector<EdgeField> fields(views.size());
+  ParallelFor(views.size(), [&](std::size_t i) { fields[i] = EdgeField(views[i], blur_px); });
   return fields;
 }
 

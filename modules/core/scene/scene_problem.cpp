@@ -6,6 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "core/parallel.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -67,12 +69,13 @@ double MeanSurprise(const SceneProblem& scene, Sectors sectors, const SceneVecto
 SceneMatrix CurvatureAt(const SceneProblem& scene, const SceneVector& unknowns) {
   const SceneVector step = Steps();
   SceneMatrix curvature;
-  for (int i = 0; i < kSceneParameters; ++i) {
+  ParallelFor(kSceneParameters, [&](std::size_t parameter) {
+    const int i = static_cast<int>(parameter);
     const SceneVector d = step[i] * SceneVector::Unit(i);
     curvature.col(i) =
         (Sum(GradientsAt(scene, unknowns + d)) - Sum(GradientsAt(scene, unknowns - d))) /
         (2 * step[i]);
-  }
+  });
   // In units of the steps, so that no unit decides what is small.
   const SceneMatrix scaled =
       step.asDiagonal() * (0.5 * (curvature + curvature.transpose())) * step.asDiagonal();

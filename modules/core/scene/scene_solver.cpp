@@ -1,12 +1,16 @@
 #include "core/scene/scene_solver.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include <Eigen/Cholesky>
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
 #include <ceres/sized_cost_function.h>
 #include <ceres/solver.h>
+
+#include "core/parallel.hpp"
 
 namespace voqcal {
 namespace {
@@ -31,21 +35,33 @@ class SceneCost final : public ceres::CostFunction {
                 double** jacobians) const override {
     const Eigen::Map<const SceneVector> unknowns(parameters[0]);
     const LeftPerturbation at(scene_.T_camera_lidar, unknowns.head<6>());
-    const bool wants_J = jacobians != nullptr && jacobians[0] != nullptr;
-    Eigen::Matrix<double, 1, kSceneParameters> J;
-    for (std::size_t i = 0; i < edges_.size(); ++i) {
-      const double surprise =
-          SurpriseAt(*edges_[i], fields_, scene_.camera, at, unknowns[6], wants_J ? &J : nullptr);
-      residuals[i] = std::sqrt(2 * scale_ * edges_[i]->weight * surprise);
-      if (!wants_J) continue;
-      Eigen::Map<Eigen::Matrix<double, 1, kSceneParameters>> row(jacobians[0] +
-                                                                 kSceneParameters * i);
-      row = scale_ * edges_[i]->weight / residuals[i] * J;
-    }
+    double* J_rows = jacobians != nullptr ? jacobians[0] : nullptr;
+    constexpr std::size_t kEdgesAtOnce = 2000;  // a thread costs about as much as so many
+    ParallelFor((edges_.size() + kEdgesAtOnce - 1) / kEdgesAtOnce, [&](std::size_t part) {
+      const std::size_t end = std::min(edges_.size(), (part + 1) * kEdgesAtOnce);
+      for (std::size_t i = part * kEdgesAtOnce; i < end; ++i) {
+        EvaluateEdge(i, at, unknowns[6], residuals, J_rows);
+      }
+    });
     return true;
   }
 
  private:
+  void EvaluateEdge(std::size_t i,
+                    const LeftPerturbation& at,
+                    double outset_rad,
+                    double* residuals,
+                    double* J_rows) const {
+    const SceneEdge& edge = *edges_[i];
+    Eigen::Matrix<double, 1, kSceneParameters> J;
+    const double surprise =
+        SurpriseAt(edge, fields_, scene_.camera, at, outset_rad, J_rows != nullptr ? &J : nullptr);
+    residuals[i] = std::sqrt(2 * scale_ * edge.weight * surprise);
+    if (J_rows == nullptr) return;
+    Eigen::Map<Eigen::Matrix<double, 1, kSceneParameters>> row(J_rows + kSceneParameters * i);
+    row = scale_ * edge.weight / residuals[i] * J;
+  }
+
   const SceneProblem& scene_;
   const std::vector<EdgeField>& fields_;
   double scale_;

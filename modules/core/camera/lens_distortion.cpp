@@ -89,6 +89,14 @@ bool IsPositiveUpTo(const Coefficients& polynomial, double u_end) {
   return IsBernsteinPositive(bernstein, kMaxHalvings);
 }
 
+// P'(u).
+template <std::size_t N>
+double Slope(const std::array<double, N>& polynomial, double u) {
+  double sum = 0.0;
+  for (std::size_t i = N - 1; i > 0; --i) sum = sum * u + static_cast<double>(i) * polynomial[i];
+  return sum;
+}
+
 // Sums of |c_i| u^i and of 2 i |c_i| u^i, i > 0: how far P and 2 u P' can be from P(0) = 1 and 0.
 template <std::size_t N>
 std::pair<double, double> Reach(const std::array<double, N>& polynomial, double u) {
@@ -110,6 +118,14 @@ bool IsPlainlyGrowing(const Distortion& lens, double u) {
   const auto [m, m_slope] = Reach(lens.denominator, u);
   const double rising = 1.0 - n - n_slope;
   return rising > 0.0 && m < 1.0 && rising * (1.0 - m) > (1.0 + n) * m_slope;
+}
+
+// Whether the growth has turned at u itself: true for most of what lies behind a lens.
+bool IsPlainlyShrinking(const Distortion& lens, double u) {
+  const double n = Polynomial(lens.numerator, u);
+  const double m = Polynomial(lens.denominator, u);
+  const double rising = n + 2.0 * u * Slope(lens.numerator, u);
+  return rising * m - n * 2.0 * u * Slope(lens.denominator, u) < 0.0;
 }
 
 // What decides, for one lens, whether a point q of the plane lies on the growing branch.
@@ -135,16 +151,10 @@ class Branch {
 // Derivative of Distort by q.
 Eigen::Matrix2d DistortJacobian(const Distortion& lens, const Eigen::Vector2d& q) {
   const double u = q.squaredNorm();
-  const auto slope = [u](const auto& polynomial) {
-    double sum = 0.0;
-    for (std::size_t i = polynomial.size() - 1; i > 0; --i) {
-      sum = sum * u + static_cast<double>(i) * polynomial[i];
-    }
-    return sum;
-  };
   const double n = Polynomial(lens.numerator, u);
   const double m = Polynomial(lens.denominator, u);
-  const double radial_by_u = (slope(lens.numerator) * m - n * slope(lens.denominator)) / (m * m);
+  const double radial_by_u =
+      (Slope(lens.numerator, u) * m - n * Slope(lens.denominator, u)) / (m * m);
   Eigen::Matrix2d J = n / m * Eigen::Matrix2d::Identity() + 2.0 * radial_by_u * q * q.transpose();
   const double diagonal = 2.0 * (lens.p1 * q.x() + lens.p2 * q.y());
   J(0, 0) += 2.0 * lens.p1 * q.y() + 6.0 * lens.p2 * q.x();
@@ -158,7 +168,8 @@ Eigen::Matrix2d DistortJacobian(const Distortion& lens, const Eigen::Vector2d& q
 
 bool IsOnGrowingBranch(const Distortion& lens, double max_radius, const Eigen::Vector2d& q) {
   const double u = q.squaredNorm();
-  if (u < max_radius * max_radius && IsPlainlyGrowing(lens, u)) return true;
+  if (!(u < max_radius * max_radius) || IsPlainlyShrinking(lens, u)) return false;
+  if (IsPlainlyGrowing(lens, u)) return true;
   return Branch(lens, max_radius).Contains(q);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.hpp"
 
@@ -24,28 +25,28 @@ bool IsInImage(const Eigen::Vector3d& point_camera_m, const CameraModel& camera)
 std::vector<SceneEdge> SceneEdgesInView(const std::vector<SceneView>& views,
                                         const CameraModel& camera,
                                         const Eigen::Isometry3d& T_camera_lidar) {
-  std::vector<SceneEdge> edges;
+  // Each with its azimuth in the camera, by which the sectors are cut.
+  std::vector<std::pair<double, SceneEdge>> seen_at;
   for (std::size_t view = 0; view < views.size(); ++view) {
     for (const DepthEdge& seen : views[view].edges) {
       const Eigen::Vector3d position_m = seen.position_lidar_m.cast<double>();
-      if (!IsInImage(T_camera_lidar * position_m, camera)) continue;
+      const Eigen::Vector3d position_camera_m = T_camera_lidar * position_m;
+      if (!IsInImage(position_camera_m, camera)) continue;
       SceneEdge edge;
       edge.position_lidar_m = position_m;
       edge.outward_lidar_m = position_m.norm() * seen.outward_lidar.cast<double>();
       edge.weight = WeightOf(seen);
       edge.view = view;
-      edges.push_back(edge);
+      seen_at.emplace_back(std::atan2(position_camera_m.x(), position_camera_m.z()), edge);
     }
   }
-  const auto azimuth = [&T_camera_lidar](const SceneEdge& edge) {
-    const Eigen::Vector3d p = T_camera_lidar * edge.position_lidar_m;
-    return std::atan2(p.x(), p.z());
-  };
-  std::stable_sort(edges.begin(), edges.end(), [&](const SceneEdge& a, const SceneEdge& b) {
-    return azimuth(a) < azimuth(b);
+  std::stable_sort(seen_at.begin(), seen_at.end(), [](const auto& a, const auto& b) {
+    return a.first < b.first;
   });
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    edges[i].sector = static_cast<int>(i * kNumSceneSectors / edges.size());
+  std::vector<SceneEdge> edges;
+  for (auto& [azimuth_rad, edge] : seen_at) {
+    edge.sector = static_cast<int>(edges.size() * kNumSceneSectors / seen_at.size());
+    edges.push_back(edge);
   }
   return edges;
 }

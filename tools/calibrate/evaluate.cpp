@@ -98,7 +98,8 @@ void Evaluate(const EvaluateArgs& args) {
   const std::vector<const BoardSample*> samples = SamplesWithout(consistent, {});
   RequireBoardsInImage(samples, rig.camera, T_camera_lidar, args.extrinsic);
   const LidarBias bias = ReadLidarBias(args.extrinsic);
-  const SceneScore score = ScoreCorrected(samples, rig.camera, T_camera_lidar, bias);
+  const SceneScore score =
+      ScoreCorrected(samples, rig.camera, T_camera_lidar, bias, Eigen::Vector2d::Zero());
   PrintPoses(samples, score);
   for (const InconsistentSample& each : consistency.inconsistent) {
     std::printf("%6lld  left out: %s\n",

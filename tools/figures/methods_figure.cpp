@@ -32,8 +32,11 @@ void PrintMethod(const Rig& rig,
   }
   const BestExtrinsic& refined = outcome.refined;
   const std::vector<BoardSample> samples = SamplesOf(held_out);
-  const SceneScore score = ScoreCorrected(
-      SamplesWithout(samples, {}), rig.camera, refined.T_camera_lidar, refined.Bias());
+  const SceneScore score = ScoreCorrected(SamplesWithout(samples, {}),
+                                          rig.camera,
+                                          refined.T_camera_lidar,
+                                          refined.Bias(),
+                                          refined.chessboard_turn_rad);
   std::printf("%-12s  %9.2f  %9.2f  %10.3f  %7.4f",
               ToString(method).c_str(),
               score.centre_mm.mean,

@@ -73,8 +73,8 @@ void PrintSubsets(const SubsetsArgs& args) {
       std::printf("%4d  none: %s\n", i, best.problem.c_str());
       continue;
     }
-    const SceneScore score =
-        ScoreCorrected(draw.rest, rig.camera, best.T_camera_lidar, best.Bias());
+    const SceneScore score = ScoreCorrected(
+        draw.rest, rig.camera, best.T_camera_lidar, best.Bias(), best.chessboard_turn_rad);
     std::printf("%4d  %-12s  %9.2f  %9.2f  %10.3f\n",
                 i,
                 ToString(best.method).c_str(),

@@ -70,13 +70,25 @@ SceneScore ReprojectionHeldOut(const std::vector<const BoardSample*>& samples,
   });
 }
 
+// At a given extrinsic. The likelihood tells it from what the scan lines' offsets do to the lidar's
+// planes; the sightings alone do not.
+Eigen::Vector2d ChessboardTurn(const LikelihoodExtrinsic& likelihood,
+                               const MixedFit& sightings,
+                               const Eigen::Isometry3d& T_camera_lidar) {
+  if (likelihood.IsUsable()) return likelihood.LensUnknownsAt(T_camera_lidar);
+  const SharedErrors shared = sightings.SharedAt(T_camera_lidar);
+  return {shared.chessboard_turn_x_rad, shared.chessboard_turn_y_rad};
+}
+
 SceneScore LikelihoodHeldOut(const std::vector<const BoardSample*>& samples,
                              const std::vector<WithoutOne>& without,
                              const CameraModel& camera) {
   return ScoreEach(samples, without, [&](const BoardSample& sample, const WithoutOne& others) {
     const LikelihoodExtrinsic& refined = others.likelihood;
     if (!refined.IsUsable()) return PoseScore{};
-    return ScorePose(CorrectedSample(sample, refined.bias), camera, refined.T_camera_lidar);
+    return ScorePose(CorrectedSample(sample, refined.bias, refined.lens_unknowns.values),
+                     camera,
+                     refined.T_camera_lidar);
   });
 }
 
@@ -86,13 +98,25 @@ SceneScore JointHeldOut(const std::vector<const BoardSample*>& samples,
                         const JointExtrinsic& joint) {
   return ScoreEach(samples, without, [&](const BoardSample& sample, const WithoutOne& others) {
     if (!others.sightings.is_usable) return PoseScore{};
-    if (!others.likelihood.IsUsable()) {
-      return ScorePose(sample, camera, joint.Without(others.sightings, nullptr));
-    }
-    const Eigen::Isometry3d T_camera_lidar = joint.Without(others.sightings, &others.likelihood);
-    const LidarBias bias = others.likelihood.BiasAt(T_camera_lidar);
-    return ScorePose(CorrectedSample(sample, bias), camera, T_camera_lidar);
+    const bool has_likelihood = others.likelihood.IsUsable();
+    const Eigen::Isometry3d T_camera_lidar =
+        joint.Without(others.sightings, has_likelihood ? &others.likelihood : nullptr);
+    const LidarBias bias = has_likelihood ? others.likelihood.BiasAt(T_camera_lidar) : LidarBias{};
+    const Eigen::Vector2d turn_rad =
+        ChessboardTurn(others.likelihood, others.sightings, T_camera_lidar);
+    return ScorePose(CorrectedSample(sample, bias, turn_rad), camera, T_camera_lidar);
   });
+}
+
+// About the centre.
+BoardPose TurnedBack(const BoardPose& pose, const Eigen::Vector2d& turn_rad) {
+  const Eigen::Matrix3d back = ExpSO3({-turn_rad.x(), -turn_rad.y(), 0.0});
+  BoardPose turned = pose;
+  turned.normal = back * pose.normal;
+  for (Eigen::Vector3d& corner_m : turned.corners_m) {
+    corner_m = pose.centre_m + back * (corner_m - pose.centre_m);
+  }
+  return turned;
 }
 
 // The average is of the samples themselves, and the lidar's common offset, which they share.
@@ -171,24 +195,29 @@ LidarBias BestExtrinsic::Bias() const {
   return method == RefineMethod::kJoint ? likelihood.BiasAt(T_camera_lidar) : LidarBias{};
 }
 
-BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias) {
+BoardSample CorrectedSample(const BoardSample& sample,
+                            const LidarBias& bias,
+                            const Eigen::Vector2d& chessboard_turn_rad) {
   BoardSample corrected;
   corrected.id = sample.id;
   corrected.utime = sample.utime;
   corrected.camera_utime = sample.camera_utime;
   corrected.num_frames = sample.num_frames;
   corrected.camera = sample.camera;
-  corrected.lidar.pose = CorrectedPose(sample.lidar, bias);
+  corrected.camera.pose = TurnedBack(sample.camera.pose, chessboard_turn_rad);
+  corrected.lidar.pose =
+      bias.IsObservable() ? CorrectedPose(sample.lidar, bias) : sample.lidar.pose;
   corrected.lidar.sides = sample.lidar.sides;
   corrected.lidar.edge_lengths_m = sample.lidar.edge_lengths_m;
   return corrected;
 }
 
 std::vector<BoardSample> CorrectedSamples(const std::vector<const BoardSample*>& samples,
-                                          const LidarBias& bias) {
+                                          const LidarBias& bias,
+                                          const Eigen::Vector2d& chessboard_turn_rad) {
   std::vector<BoardSample> corrected;
   for (const BoardSample* sample : samples) {
-    corrected.push_back(bias.IsObservable() ? CorrectedSample(*sample, bias) : *sample);
+    corrected.push_back(CorrectedSample(*sample, bias, chessboard_turn_rad));
   }
   return corrected;
 }
@@ -196,9 +225,10 @@ std::vector<BoardSample> CorrectedSamples(const std::vector<const BoardSample*>&
 SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
                           const CameraModel& camera,
                           const Eigen::Isometry3d& T_camera_lidar,
-                          const LidarBias& bias) {
+                          const LidarBias& bias,
+                          const Eigen::Vector2d& chessboard_turn_rad) {
   std::vector<PoseScore> poses;
-  for (const BoardSample& sample : CorrectedSamples(samples, bias)) {
+  for (const BoardSample& sample : CorrectedSamples(samples, bias, chessboard_turn_rad)) {
     poses.push_back(ScorePose(sample, camera, T_camera_lidar));
   }
   return SummariseScores(std::move(poses));
@@ -263,10 +293,14 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
     case RefineMethod::kLikelihood:
       best.T_camera_lidar = best.likelihood.T_camera_lidar;
       best.covariance = best.likelihood.uncertainty.covariance;
+      best.chessboard_turn_rad =
+          ChessboardTurn(best.likelihood, best.joint.sightings, best.T_camera_lidar);
       break;
     case RefineMethod::kJoint:
       best.T_camera_lidar = best.joint.T_camera_lidar();
       best.covariance = best.joint.covariance();
+      best.chessboard_turn_rad =
+          ChessboardTurn(best.likelihood, best.joint.sightings, best.T_camera_lidar);
       best.scene_note = best.joint.scene.reason;
       break;
   }

@@ -72,21 +72,28 @@ struct BestExtrinsic {
   bool IsUsable() const { return problem.empty(); }
   /// The lidar's faults that go with the extrinsic: none, unless it is the likelihood's or joint.
   LidarBias Bias() const;
+  /// How the chessboards are turned against their rays (SharedErrors): zero, unless it is the
+  /// likelihood's or joint.
+  Eigen::Vector2d chessboard_turn_rad = Eigen::Vector2d::Zero();
 };
 
-/// The sample with the lidar's board as it would have been seen without `bias`; its points are left
-/// out.
-BoardSample CorrectedSample(const BoardSample& sample, const LidarBias& bias);
+/// The sample with the boards as they would have been seen without the lidar's `bias` and the
+/// chessboards' turn about the camera's x and y; its points are left out.
+BoardSample CorrectedSample(const BoardSample& sample,
+                            const LidarBias& bias,
+                            const Eigen::Vector2d& chessboard_turn_rad);
 
-/// Each sample so; as it is if `bias` has no fault that is observable.
+/// Each sample so; the lidar's board as it is if `bias` has no fault that is observable.
 std::vector<BoardSample> CorrectedSamples(const std::vector<const BoardSample*>& samples,
-                                          const LidarBias& bias);
+                                          const LidarBias& bias,
+                                          const Eigen::Vector2d& chessboard_turn_rad);
 
 /// ScoreScene of the CorrectedSamples.
 SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
                           const CameraModel& camera,
                           const Eigen::Isometry3d& T_camera_lidar,
-                          const LidarBias& bias);
+                          const LidarBias& bias,
+                          const Eigen::Vector2d& chessboard_turn_rad);
 
 /// Refines `average` by each method, and takes the joint one (or the one that the options name).
 /// The likelihood needs points on most boards; without it and without scenes there is no joint one.

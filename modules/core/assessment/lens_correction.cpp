@@ -17,7 +17,7 @@ SceneScore HeldOut(const std::vector<const BoardSample*>& samples,
   return ScoreHeldOut(samples, [&](const BoardSample& held_out, const auto& others) -> PoseScore {
     const LikelihoodExtrinsic refined = RefineWithLensNearby(others, board, camera, all, options);
     if (!refined.IsUsable()) return {};
-    BoardSample corrected = CorrectedSample(held_out, refined.bias);
+    BoardSample corrected = CorrectedSample(held_out, refined.bias, Eigen::Vector2d::Zero());
     corrected.camera.pose = CorrectedCameraPose(held_out, board, camera, refined.lens.errors);
     return ScorePose(
         corrected, CorrectedCamera(camera, refined.lens.errors), refined.T_camera_lidar);

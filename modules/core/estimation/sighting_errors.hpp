@@ -52,11 +52,22 @@ struct SharedErrors {
   /// at the same elevations...
   double outline_lift_m = 0.0;
   double outline_rise = 0.0;  ///< ...growing with the range: metres a metre.
+  /// Of all chessboards' rotations against the rays to their centres, about the camera's x and y. A
+  /// principal point that is given wrongly turns the rays, and leaves boards that face the camera
+  /// as they are: who believes both is off between them. (Offsets of scan lines that grow with the
+  /// elevation turn the lidar's planes, and look the same from here.)
+  double chessboard_turn_x_rad = 0.0;
+  double chessboard_turn_y_rad = 0.0;
 };
+
+/// 1 sigma of a chessboard_turn before the data speak: a principal point that is 10 px off, of a
+/// focal length of 1000.
+constexpr double kPriorChessboardTurnRad = 0.01;
 
 /// 1 sigma of each before the data speak. The heights' is twice the likelihood's, which takes out
 /// what the scan lines' offsets do to the outline's plane.
-constexpr SharedErrors kPriorSharedErrors{0.03, 0.002, 0.001};
+constexpr SharedErrors kPriorSharedErrors{
+    0.03, 0.002, 0.001, kPriorChessboardTurnRad, kPriorChessboardTurnRad};
 
 /// How one board's covariance grows with the square of each error, in the order of the struct.
 std::array<Matrix6d, kNumSightingErrors> UnitCovariances(const BoardPose& pose_camera,

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "core/estimation/is_regular.hpp"
 #include "core/estimation/pose_difference.hpp"
@@ -12,25 +13,33 @@
 namespace voqcal {
 namespace {
 
-Eigen::Vector3d ToVector(const SharedErrors& shared) {
-  return {shared.range_offset_m, shared.outline_lift_m, shared.outline_rise};
+using SharedVector = Eigen::Matrix<double, kNumSharedErrors, 1>;
+
+SharedVector ToVector(const SharedErrors& shared) {
+  SharedVector vector;
+  vector << shared.range_offset_m, shared.outline_lift_m, shared.outline_rise,
+      shared.chessboard_turn_x_rad, shared.chessboard_turn_y_rad;
+  return vector;
+}
+
+SharedErrors FromVector(const SharedVector& vector) {
+  return {vector[0], vector[1], vector[2], vector[3], vector[4]};
 }
 
 void Move(const MixedVector& step, MixedFit* fit) {
   fit->T_camera_lidar = PerturbLeft(fit->T_camera_lidar, step.head<6>());
-  fit->shared.range_offset_m += step[6];
-  fit->shared.outline_lift_m += step[7];
-  fit->shared.outline_rise += step[8];
+  fit->shared = FromVector(ToVector(fit->shared) + step.tail<kNumSharedErrors>());
 }
 
-// How the lidar's shared errors move the difference: its centre along its ray, and across it
-// upwards.
-Eigen::Matrix<double, 6, 3> BySharedErrors(const Eigen::Vector3d& centre_lidar_m,
-                                           const Eigen::Matrix3d& R_camera_lidar) {
+// How the shared errors move the difference: the lidar's centre along its ray, and across it
+// upwards; the chessboard's rotation.
+Eigen::Matrix<double, 6, kNumSharedErrors> BySharedErrors(const Eigen::Vector3d& centre_lidar_m,
+                                                          const Eigen::Matrix3d& R_camera_lidar) {
   const Eigen::Vector3d ray = centre_lidar_m.normalized();
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ() - ray.z() * ray;
-  Eigen::Matrix<double, 6, 3> J = Eigen::Matrix<double, 6, 3>::Zero();
-  J.bottomRows<3>() << R_camera_lidar * ray, R_camera_lidar * up,
+  Eigen::Matrix<double, 6, kNumSharedErrors> J = Eigen::Matrix<double, 6, kNumSharedErrors>::Zero();
+  J.topRightCorner<2, 2>() = -Eigen::Matrix2d::Identity();
+  J.bottomLeftCorner<3, 3>() << R_camera_lidar * ray, R_camera_lidar * up,
       centre_lidar_m.norm() * (R_camera_lidar * up);
   return J;
 }
@@ -41,7 +50,8 @@ struct MixedEquations {
   MixedVector pull = MixedVector::Zero();
 
   explicit MixedEquations(const MixedFit& fit) {
-    pull.tail<3>() = -information.bottomRightCorner<3, 3>() * ToVector(fit.shared);
+    pull.tail<kNumSharedErrors>() =
+        -information.bottomRightCorner<kNumSharedErrors, kNumSharedErrors>() * ToVector(fit.shared);
   }
 
   void Add(const MixedDifference& d, const Matrix6d& weight) {
@@ -138,6 +148,14 @@ SightingVariances Step(const std::vector<Sighting>& sightings,
 
 }  // namespace
 
+SharedErrors MixedFit::SharedAt(const Eigen::Isometry3d& T_camera_lidar_given) const {
+  // The expectation, of a normal distribution.
+  const Eigen::Matrix<double, kNumSharedErrors, 6> by_extrinsic =
+      covariance.bottomLeftCorner<kNumSharedErrors, 6>() * ExtrinsicCovariance().inverse();
+  return FromVector(ToVector(shared) +
+                    by_extrinsic * DifferenceLeft(T_camera_lidar, T_camera_lidar_given));
+}
+
 MixedDifference DifferenceOf(const BoardSample& sample,
                              const CameraModel& camera,
                              const MixedFit& fit) {
@@ -152,7 +170,8 @@ MixedDifference DifferenceOf(const BoardSample& sample,
 
 MixedMatrix MixedPriorInformation() {
   MixedMatrix information = MixedMatrix::Zero();
-  information.diagonal().tail<3>() = ToVector(kPriorSharedErrors).cwiseAbs2().cwiseInverse();
+  information.diagonal().tail<kNumSharedErrors>() =
+      ToVector(kPriorSharedErrors).cwiseAbs2().cwiseInverse();
   return information;
 }
 

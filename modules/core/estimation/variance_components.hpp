@@ -11,8 +11,9 @@
 
 namespace voqcal {
 
-/// [the extrinsic's perturbation (6); SharedErrors (3), in their order].
-constexpr int kMixedSize = 9;
+/// [the extrinsic's perturbation (6); SharedErrors (5), in their order].
+constexpr int kNumSharedErrors = 5;
+constexpr int kMixedSize = 6 + kNumSharedErrors;
 using MixedVector = Eigen::Matrix<double, kMixedSize, 1>;
 using MixedMatrix = Eigen::Matrix<double, kMixedSize, kMixedSize>;
 
@@ -26,6 +27,8 @@ struct MixedFit {
   bool is_usable = false;  ///< False if the poses leave something open, or do not converge.
 
   Matrix6d ExtrinsicCovariance() const { return covariance.topLeftCorner<6, 6>(); }
+  /// The shared errors if the extrinsic is a given one, near the fit's.
+  SharedErrors SharedAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
 };
 
 /// PoseDifference with the errors of `fit`: those that are shared taken out, the others in C.

@@ -7,6 +7,7 @@
 
 #include "core/board/what_was_measured.hpp"
 #include "core/estimation/left_perturbation.hpp"
+#include "core/estimation/sighting_errors.hpp"
 
 namespace voqcal {
 namespace {
@@ -28,11 +29,24 @@ Matrix2Ld PixelByLens(const CameraModel& camera, const Eigen::Vector3d& point_ca
 
 }  // namespace
 
+LensTerms ChessboardTurnTerms() {
+  constexpr Eigen::Index kNumTurns = 2;
+  LensTerms terms;
+  terms.board_by_lens.setZero(6, kNumTurns);
+  terms.board_by_lens.topRows<kNumTurns>() = -Eigen::Matrix2d::Identity();
+  terms.information.setZero(kNumTurns, kNumTurns);
+  terms.pull.setZero(kNumTurns);
+  terms.prior_sigmas.setConstant(kNumTurns, kPriorChessboardTurnRad);
+  return terms;
+}
+
 LensTerms LensTermsOf(const BoardSample& sample,
                       const BoardSpec& board,
                       const CameraModel& camera,
+                      double lens_error,
                       double corner_error_px) {
   LensTerms terms;
+  terms.prior_sigmas.setConstant(kNumLensErrors, lens_error);
   terms.board_by_lens.setZero(6, kNumLensErrors);
   terms.information.setZero(kNumLensErrors, kNumLensErrors);
   terms.pull.setZero(kNumLensErrors);
@@ -70,7 +84,8 @@ BoardPose CorrectedCameraPose(const BoardSample& sample,
                               const BoardSpec& board,
                               const CameraModel& camera,
                               const LensErrors& errors) {
-  const LensTerms terms = LensTermsOf(sample, board, camera, /*corner_error_px=*/1.0);
+  const LensTerms terms =
+      LensTermsOf(sample, board, camera, /*lens_error=*/1.0, /*corner_error_px=*/1.0);
   BoardPose pose = PoseFromTransform(
       PerturbLeft(TransformFromPose(sample.camera.pose), terms.board_by_lens * errors), board);
   pose.covariance = sample.camera.pose.covariance;

@@ -15,20 +15,27 @@ namespace voqcal {
 /// of all corners by the board's pose p (left perturbation) and LensErrors l, the pose with the
 /// least squares moves by S l, S = -(J'J)^-1 J'L, and what is left of the corners' errors is
 ///     e0 + (L + J S) l
-/// No rows or columns: lens errors are not asked for.
+/// No rows or columns: no errors of the lens are asked for.
 struct LensTerms {
   Eigen::Matrix<double, 6, Eigen::Dynamic> board_by_lens;  ///< S.
   Eigen::MatrixXd information;                             ///< Of l, by what is left...
   Eigen::VectorXd pull;                                    ///< ...minus its gradient at l = 0.
+  Eigen::VectorXd prior_sigmas;                            ///< Of l.
 
   Eigen::Index NumErrors() const { return pull.size(); }
 };
 
+/// Of two errors alone, which stand for all that are not asked for: SharedErrors' chessboard_turn,
+/// radians. The corners tell nothing of them.
+LensTerms ChessboardTurnTerms();
+
+/// @param lens_error       1 sigma of each of LensErrors, before the corners speak.
 /// @param corner_error_px  1 sigma of each corner in x and in y.
 /// @return zeros if the sample has no corners' pixels (features read from a table).
 LensTerms LensTermsOf(const BoardSample& sample,
                       const BoardSpec& board,
                       const CameraModel& camera,
+                      double lens_error,
                       double corner_error_px);
 
 /// Where the camera sees the board if its intrinsics have these errors; its covariance stays.

@@ -39,7 +39,7 @@ LidarBias BiasOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covarian
 Eigen::Matrix<double, Eigen::Dynamic, 6> FaultsByExtrinsic(const LikelihoodSearch& search,
                                                            const Eigen::MatrixXd& covariance) {
   const Matrix6d of_extrinsic = covariance.topLeftCorner<6, 6>();
-  const Eigen::Index num_faults = kFirstRing + search.state().NumRings();
+  const Eigen::Index num_faults = search.state().faults_m.size();
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_extrinsic =
       covariance.block(kExtrinsicSize, 0, num_faults, kExtrinsicSize) * of_extrinsic.inverse();
   for (Eigen::Index i = 0; i < num_faults; ++i) {
@@ -48,16 +48,24 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> FaultsByExtrinsic(const LikelihoodSearc
   return by_extrinsic;
 }
 
-LensEstimate LensOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covariance) {
+LensUnknowns LensUnknownsOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covariance) {
   const Eigen::Index num_lens = search.state().num_lens;
-  LensEstimate lens;
-  if (num_lens == 0) return lens;
-  lens.errors = search.state().faults_m.tail(num_lens);
-  lens.standard_errors = covariance.diagonal().tail(num_lens).cwiseSqrt();
+  LensUnknowns unknowns;
+  unknowns.values = search.state().faults_m.tail(num_lens);
+  unknowns.standard_errors = covariance.diagonal().tail(num_lens).cwiseSqrt();
   for (Eigen::Index i = 0; i < num_lens; ++i) {
-    lens.is_observable[static_cast<std::size_t>(i)] =
-        search.IsFree(kFirstRing + search.state().NumRings() + i);
+    unknowns.is_observable.push_back(search.IsFree(kFirstRing + search.state().NumRings() + i));
   }
+  return unknowns;
+}
+
+LensEstimate LensEstimateOf(const LensUnknowns& unknowns) {
+  LensEstimate lens;
+  if (unknowns.values.size() == 0) return lens;  // of too few samples
+  lens.errors = unknowns.values;
+  lens.standard_errors = unknowns.standard_errors;
+  std::copy(
+      unknowns.is_observable.begin(), unknowns.is_observable.end(), lens.is_observable.begin());
   return lens;
 }
 
@@ -91,6 +99,7 @@ std::vector<LikelihoodPose> PosesOf(const std::vector<const BoardSample*>& sampl
   std::vector<LikelihoodPose> poses;
   for (const BoardSample* sample : samples) {
     poses.push_back(MakeLikelihoodPose(*sample, shades, T_camera_lidar));
+    poses.back().lens = ChessboardTurnTerms();
   }
   return poses;
 }
@@ -103,7 +112,8 @@ std::vector<LikelihoodPose> PosesWithLens(const std::vector<const BoardSample*>&
                                           const LikelihoodOptions& options) {
   std::vector<LikelihoodPose> poses = PosesOf(samples, shades, T_camera_lidar);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    poses[i].lens = LensTermsOf(*samples[i], board, camera, options.corner_error_px);
+    poses[i].lens =
+        LensTermsOf(*samples[i], board, camera, options.lens_error, options.corner_error_px);
   }
   return poses;
 }
@@ -142,7 +152,7 @@ LikelihoodExtrinsic RefinePoses(std::vector<LikelihoodPose> poses,
   refined.bias.shades = shades;
   refined.faults_m = search.state().faults_m.head(kFirstRing + search.state().NumRings());
   refined.faults_by_extrinsic = FaultsByExtrinsic(search, covariance);
-  refined.lens = LensOf(search, covariance);
+  refined.lens_unknowns = LensUnknownsOf(search, covariance);
   refined.noise = search.noise();
   AddResiduals(search, &refined);
   refined.status = RefineStatus::kConverged;
@@ -156,7 +166,7 @@ LikelihoodExtrinsic RefinePosesNearby(std::vector<LikelihoodPose> poses,
   refined.status = RefineStatus::kDegenerate;
   if (poses.size() < kLeastSamples) return refined;
   LikelihoodSearch search(std::move(poses), nearby.T_camera_lidar, options);
-  search.StartFrom(nearby.bias, nearby.lens, nearby.noise);
+  search.StartFrom(nearby.bias, nearby.lens_unknowns, nearby.noise);
   refined.status = RefineStatus::kNotConverged;
   if (!search.Minimise(options.max_iterations, kSettledNearby)) return refined;
   if (!search.IsPhysical()) return refined;
@@ -165,7 +175,7 @@ LikelihoodExtrinsic RefinePosesNearby(std::vector<LikelihoodPose> poses,
   const Eigen::Index num_faults = kFirstRing + state.NumRings();
   refined.faults_m.head(num_faults) = state.faults_m.head(num_faults);
   SetFaults(refined.faults_m, &refined.bias);
-  if (state.num_lens > 0) refined.lens.errors = state.faults_m.tail(state.num_lens);
+  refined.lens_unknowns.values = state.faults_m.tail(state.num_lens);
   refined.status = RefineStatus::kConverged;
   return refined;
 }
@@ -200,11 +210,14 @@ LikelihoodExtrinsic RefineWithLens(const std::vector<const BoardSample*>& sample
                                    const LikelihoodOptions& options) {
   RequireUsable("LikelihoodOptions", options.Problems());
   const ShadeScale shades = MakeShadeScale(samples);
-  return RefinePoses(PosesWithLens(samples, board, camera, shades, T_camera_lidar_start, options),
-                     shades,
-                     camera,
-                     T_camera_lidar_start,
-                     options);
+  LikelihoodExtrinsic refined =
+      RefinePoses(PosesWithLens(samples, board, camera, shades, T_camera_lidar_start, options),
+                  shades,
+                  camera,
+                  T_camera_lidar_start,
+                  options);
+  refined.lens = LensEstimateOf(refined.lens_unknowns);
+  return refined;
 }
 
 LikelihoodExtrinsic RefineWithLensNearby(const std::vector<const BoardSample*>& samples,
@@ -213,10 +226,12 @@ LikelihoodExtrinsic RefineWithLensNearby(const std::vector<const BoardSample*>& 
                                          const LikelihoodExtrinsic& nearby,
                                          const LikelihoodOptions& options) {
   RequireUsable("LikelihoodOptions", options.Problems());
-  return RefinePosesNearby(
+  LikelihoodExtrinsic refined = RefinePosesNearby(
       PosesWithLens(samples, board, camera, nearby.bias.shades, nearby.T_camera_lidar, options),
       nearby,
       options);
+  refined.lens = LensEstimateOf(refined.lens_unknowns);
+  return refined;
 }
 
 }  // namespace voqcal

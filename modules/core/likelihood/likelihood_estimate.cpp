@@ -27,11 +27,17 @@ bool LensEstimate::IsObservable() const {
 
 LidarBias LikelihoodExtrinsic::BiasAt(const Eigen::Isometry3d& T_camera_lidar_given) const {
   if (faults_m.size() == 0) return bias;  // as a message brings it: it goes with its extrinsic
-  const Eigen::VectorXd moves_m =
-      faults_by_extrinsic * DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
+  const Eigen::VectorXd moves_m = faults_by_extrinsic.topRows(faults_m.size()) *
+                                  DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
   LidarBias moved = bias;
   SetFaults(faults_m + moves_m, &moved);
   return moved;
+}
+
+Eigen::VectorXd LikelihoodExtrinsic::LensUnknownsAt(
+    const Eigen::Isometry3d& T_camera_lidar_given) const {
+  return lens_unknowns.values + faults_by_extrinsic.bottomRows(lens_unknowns.values.size()) *
+                                    DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
 }
 
 std::string LikelihoodExtrinsic::Summary() const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -44,6 +45,13 @@ struct LensEstimate {
   bool IsObservable() const;  ///< Any of them.
 };
 
+/// What the poses' LensTerms ask for, in their order.
+struct LensUnknowns {
+  Eigen::VectorXd values;
+  Eigen::VectorXd standard_errors;
+  std::vector<bool> is_observable;
+};
+
 /// An extrinsic with the lidar's faults that came with it.
 struct LikelihoodExtrinsic {
   /// Takes lidar coordinates to camera coordinates: p_camera = T_camera_lidar * p_lidar.
@@ -51,8 +59,10 @@ struct LikelihoodExtrinsic {
   LikelihoodUncertainty uncertainty;
   LidarBias bias;
   Eigen::VectorXd faults_m;  ///< The bias, in the order of LikelihoodState; empty: not known.
-  /// How they follow a given extrinsic: by [rotation_rad; translation_m], left side.
+  /// How they, and after them lens_unknowns, follow a given extrinsic: by [rotation_rad;
+  /// translation_m], left side.
   Eigen::Matrix<double, Eigen::Dynamic, 6> faults_by_extrinsic;
+  LensUnknowns lens_unknowns;  ///< The chessboards' turn (ChessboardTurnTerms), or all of the lens.
   LensEstimate lens;  ///< RefineWithLens'; the extrinsic then goes with the corrected camera.
   LikelihoodNoise noise;
   double range_rms_m = std::numeric_limits<double>::quiet_NaN();   ///< Of all returns.
@@ -63,6 +73,8 @@ struct LikelihoodExtrinsic {
   bool IsUsable() const { return status == RefineStatus::kConverged; }
   /// The most likely bias if that is the extrinsic; to first order.
   LidarBias BiasAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
+  /// The same of the lens_unknowns.
+  Eigen::VectorXd LensUnknownsAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
   std::string Summary() const;  ///< One line for a log.
 };
 

@@ -43,12 +43,14 @@ LikelihoodSearch::LikelihoodSearch(std::vector<LikelihoodPose> poses,
   state_.faults_m = Eigen::VectorXd::Zero(num_faults);
   for (const LikelihoodPose& pose : poses_) state_.T_camera_board.push_back(pose.T_camera_board);
   prior_information_ = FaultPriorInformation(options, num_faults);
-  prior_information_.tail(num_lens).setConstant(1.0 / (options.lens_error * options.lens_error));
+  if (num_lens > 0) {
+    prior_information_.tail(num_lens) = poses_.front().lens.prior_sigmas.cwiseAbs2().cwiseInverse();
+  }
   is_free_.assign(static_cast<std::size_t>(num_faults), true);
 }
 
 void LikelihoodSearch::StartFrom(const LidarBias& bias,
-                                 const LensEstimate& lens,
+                                 const LensUnknowns& lens,
                                  const LikelihoodNoise& noise) {
   const auto take = [this](Eigen::Index fault, const BiasEstimate& estimate) {
     is_free_[static_cast<std::size_t>(fault)] = estimate.is_observable;
@@ -65,7 +67,7 @@ void LikelihoodSearch::StartFrom(const LidarBias& bias,
   for (Eigen::Index i = 0; i < state_.num_lens; ++i) {
     const Eigen::Index fault = kFirstRing + state_.NumRings() + i;
     is_free_[static_cast<std::size_t>(fault)] = lens.is_observable[static_cast<std::size_t>(i)];
-    state_.faults_m[fault] = lens.errors[i];
+    state_.faults_m[fault] = lens.values[i];
   }
 }
 

@@ -22,7 +22,7 @@ class LikelihoodSearch {
                    const LikelihoodOptions& options);
 
   /// Takes over faults, which of them are held at zero, and noise levels.
-  void StartFrom(const LidarBias& bias, const LensEstimate& lens, const LikelihoodNoise& noise);
+  void StartFrom(const LidarBias& bias, const LensUnknowns& lens, const LikelihoodNoise& noise);
 
   /// True if no unknown moved by more than `small_step` (radians or metres) in the last step.
   bool Minimise(int max_iterations, double small_step);

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "core/camera/lens_errors.hpp"
 #include "core/estimation/left_perturbation.hpp"
 
 namespace voqcal {
@@ -97,7 +98,7 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
   };
   const Eigen::Vector2d principal_point_px(camera.cx_px, camera.cy_px);
   Vector6d variance = Vector6d::Zero();
-  if (search.state().num_lens == 0) {  // else the likelihood counts them
+  if (search.state().num_lens != kNumLensErrors) {  // else the likelihood counts them
     variance += by_lens([&](const Eigen::Vector2d& pixel_px) -> Eigen::Vector2d {
       return trust * options.focal_length_error * (pixel_px - principal_point_px);
     });

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/selection/consistency.hpp"
+#include "core/units.hpp"
 #include "support/synthetic_sweeps.hpp"
 
 namespace voqcal {
@@ -56,6 +57,26 @@ TEST(RefineBest, IsJointAndNearlyTheLikelihoodWhereItsModelIsRight) {
   EXPECT_LT(joint.ErrorMm(), best.trials[0].ErrorMm());
   EXPECT_LT(joint.ErrorMm(), best.trials[1].ErrorMm());
   EXPECT_LT(joint.ErrorMm(), 1.1 * best.trials[2].ErrorMm());
+}
+
+// As a principal point does that is given wrongly.
+TEST(RefineBest, LeavesTheRaysWhereAllChessboardsAreTurned) {
+  constexpr double kTurnRad = 0.01;
+  auto samples = test::SamplesWithSweeps(NoisyScene(20), kFaults);
+  for (BoardSample& sample : samples) {
+    Vector6d turn = Vector6d::Zero();
+    turn[1] = kTurnRad;
+    const Matrix6d covariance = sample.camera.pose.covariance;
+    sample.camera.pose = PoseFromTransform(PerturbLeft(TransformFromPose(sample.camera.pose), turn),
+                                           test::TestBoard());
+    sample.camera.pose.covariance = covariance;
+  }
+  const BestExtrinsic best = Best(test::Pointers(samples));
+  ASSERT_TRUE(best.IsUsable()) << best.problem;
+  EXPECT_LT(RotationAngleBetween(best.T_camera_lidar.linear(), test::TestExtrinsic().linear()),
+            0.2 * kTurnRad);
+  EXPECT_NEAR(best.chessboard_turn_rad.y(), kTurnRad, 0.3 * kTurnRad);
+  EXPECT_LT(best.held_out.normal_deg.mean, 0.5 * kDegPerRad * kTurnRad);
 }
 
 TEST(RefineBest, IsTheReprojectionsWithoutPointsAndScenes) {

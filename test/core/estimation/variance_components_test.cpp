@@ -103,6 +103,39 @@ TEST(FitWithErrors, WeighsSightingsByTheirErrors) {
   EXPECT_LT(sum_mixed_m2, sum_plain_m2);
 }
 
+TEST(FitWithErrors, TellsTheChessboardsTurnFromTheExtrinsics) {
+  const Eigen::Vector2d turn_rad(0.012, -0.008);
+  std::vector<BoardSample> samples = Session(40, {0.002, 0.002, 0.002, 0.005, 0.003}, 1);
+  for (BoardSample& sample : samples) {
+    Vector6d turn = Vector6d::Zero();
+    turn.head<2>() = turn_rad;
+    BoardPose& pose = sample.camera.pose;
+    pose = PoseFromTransform(PerturbLeft(TransformFromPose(pose), turn), test::TestBoard());
+  }
+  const MixedFit mixed = FitOf(samples);
+  ASSERT_TRUE(mixed.is_usable);
+  const Vector6d error = DifferenceLeft(test::TestExtrinsic(), mixed.T_camera_lidar);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_LT(std::abs(error[i]), 3 * std::sqrt(mixed.covariance(i, i))) << i;
+  }
+  EXPECT_LT(error.head<3>().norm(), 0.2 * turn_rad.norm());
+  EXPECT_NEAR(mixed.shared.chessboard_turn_x_rad, turn_rad.x(), 0.2 * turn_rad.norm());
+  EXPECT_NEAR(mixed.shared.chessboard_turn_y_rad, turn_rad.y(), 0.2 * turn_rad.norm());
+}
+
+TEST(FitWithErrors, LetsTheTurnFollowAGivenExtrinsic) {
+  const MixedFit mixed = FitOf(Session(20, {0.002, 0.002, 0.002, 0.005, 0.003}, 1));
+  ASSERT_TRUE(mixed.is_usable);
+  EXPECT_EQ(mixed.SharedAt(mixed.T_camera_lidar).chessboard_turn_x_rad,
+            mixed.shared.chessboard_turn_x_rad);
+  Vector6d step = Vector6d::Zero();
+  step[0] = 0.01;  // the lidar's normals turn, and the chessboards' stay: they differ by the less
+  const double moved =
+      mixed.SharedAt(PerturbLeft(mixed.T_camera_lidar, step)).chessboard_turn_x_rad -
+      mixed.shared.chessboard_turn_x_rad;
+  EXPECT_NEAR(moved, -0.01, 0.002);
+}
+
 TEST(FitWithErrors, IsNotUsableWhereTheExtrinsicIsOpen) {
   EXPECT_FALSE(FitWithErrors({}, test::TestCamera(), test::TestExtrinsic()).is_usable);
 }

@@ -107,13 +107,20 @@ struct OutlineCost {
   }
 };
 
-// The board against where the chessboard puts it, whitened.
+// The board against where the chessboard puts it once it is turned back, whitened.
 struct ChessboardCost {
   Matrix6d whiten;
   template <typename T>
-  bool operator()(const T* board, T* residual) const {
+  bool operator()(const T* board, const T* turn_x, const T* turn_y, T* residual) const {
+    const T turn[3] = {*turn_x, *turn_y, T(0.0)};
+    T by_board[4], by_turn[4], both[4];
+    ceres::AngleAxisToQuaternion(board, by_board);
+    ceres::AngleAxisToQuaternion(turn, by_turn);
+    ceres::QuaternionProduct(by_board, by_turn, both);
+    Eigen::Matrix<T, 6, 1> difference = Eigen::Map<const Eigen::Matrix<T, 6, 1>>(board);
+    ceres::QuaternionToAngleAxis(both, difference.data());
     Eigen::Map<Eigen::Matrix<T, 6, 1>> r(residual);
-    r = whiten.cast<T>() * Eigen::Map<const Eigen::Matrix<T, 6, 1>>(board);
+    r = whiten.cast<T>() * difference;
     return true;
   }
 };
@@ -177,7 +184,7 @@ TEST(RefineByLikelihood, StandsWhereCeresFindsTheMinimumOfTheSameCost) {
 
   ceres::Problem problem;
   Vector6d lidar = Vector6d::Zero();
-  double common = 0.0, dark = 0.0, lift = 0.0, rise = 0.0;
+  double common = 0.0, dark = 0.0, lift = 0.0, rise = 0.0, turn_x = 0.0, turn_y = 0.0;
   std::vector<double> rings(refined.bias.rings.size(), 0.0);
   std::vector<Vector6d> boards(all.size(), Vector6d::Zero());
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -202,16 +209,21 @@ TEST(RefineByLikelihood, StandsWhereCeresFindsTheMinimumOfTheSameCost) {
         &lift,
         &rise);
     problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<ChessboardCost, 6, 6>(
+        new ceres::AutoDiffCostFunction<ChessboardCost, 6, 6, 1, 1>(
             new ChessboardCost{Whitening<6>(CameraCovariance(pose, refined.noise))}),
         nullptr,
-        boards[i].data());
+        boards[i].data(),
+        &turn_x,
+        &turn_y);
   }
-  const auto add_fault = [&problem](double* fault, double sigma, const BiasEstimate& estimate) {
+  const auto add_prior = [&problem](double* fault, double sigma, bool is_free) {
     if (!problem.HasParameterBlock(fault)) return;
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<PriorCost, 1, 1>(new PriorCost{sigma}), nullptr, fault);
-    if (!estimate.is_observable) problem.SetParameterBlockConstant(fault);
+    if (!is_free) problem.SetParameterBlockConstant(fault);
+  };
+  const auto add_fault = [&](double* fault, double sigma, const BiasEstimate& estimate) {
+    add_prior(fault, sigma, estimate.is_observable);
   };
   add_fault(&common, options.common_prior_m, refined.bias.common);
   add_fault(&dark, options.dark_step_prior_m, refined.bias.dark_step);
@@ -220,6 +232,8 @@ TEST(RefineByLikelihood, StandsWhereCeresFindsTheMinimumOfTheSameCost) {
   for (std::size_t i = 0; i < rings.size(); ++i) {
     add_fault(&rings[i], options.ring_prior_m, refined.bias.rings[i]);
   }
+  add_prior(&turn_x, kPriorChessboardTurnRad, refined.lens_unknowns.is_observable[0]);
+  add_prior(&turn_y, kPriorChessboardTurnRad, refined.lens_unknowns.is_observable[1]);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.max_num_iterations = 200;

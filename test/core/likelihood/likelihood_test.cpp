@@ -46,6 +46,27 @@ BoardAndLidar Perturbed(const BoardAndLidar& at, int parameter, double step) {
   return {at.T_camera_lidar, PerturbLeft(at.T_camera_board, delta)};
 }
 
+TEST(RefineByLikelihood, LeavesTheRaysWhereAllChessboardsAreTurned) {
+  constexpr double kTurnRad = 0.01;
+  test::SyntheticSamplesOptions scene;
+  scene.num_samples = 20;
+  scene.lidar_centre_noise_m = 0.002;
+  scene.lidar_rotation_noise_rad = 0.003;
+  auto samples = test::SamplesWithSweeps(scene, {0.02, 0.015, 0.008, 0.01});
+  for (BoardSample& sample : samples) {
+    Vector6d turn = Vector6d::Zero();
+    turn[0] = kTurnRad;
+    sample.camera.pose = PoseFromTransform(PerturbLeft(TransformFromPose(sample.camera.pose), turn),
+                                           test::TestBoard());
+  }
+  const LikelihoodExtrinsic refined = Refine(samples);
+  ASSERT_TRUE(refined.IsUsable());
+  EXPECT_LT(RotationAngleBetween(refined.T_camera_lidar.linear(), test::TestExtrinsic().linear()),
+            0.2 * kTurnRad);
+  ASSERT_EQ(refined.lens_unknowns.values.size(), 2);
+  EXPECT_NEAR(refined.lens_unknowns.values[0], kTurnRad, 0.2 * kTurnRad);
+}
+
 TEST(LikelihoodTerms, JacobiansAgreeWithDifferences) {
   // Central differences of functions of curvature about 10: 1e-11 off by the step, 1e-10 by
   // rounding.

@@ -87,4 +87,15 @@ LidarBias ReadLidarBias(const std::filesystem::path& path) {
   return bias;
 }
 
+Eigen::Vector2d ReadChessboardTurn(const std::filesystem::path& path) {
+  const std::filesystem::path file = ResultFileAt(path);
+  YamlDocument document(file.string(), ReadWholeFile(file));
+  YamlSection top(&document);
+  std::vector<double> turn_rad = {0, 0};
+  top.Read("chessboard_turn_rad", &turn_rad);
+  if (turn_rad.size() != 2) top.AddError("chessboard_turn_rad", "must have two numbers");
+  document.ThrowIfWrong();
+  return {turn_rad[0], turn_rad[1]};
+}
+
 }  // namespace voqcal

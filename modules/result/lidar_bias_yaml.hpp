@@ -16,4 +16,8 @@ std::string LidarBiasYaml(const LidarBias& bias);
 /// @throws std::runtime_error naming file, line, key, rule and value.
 LidarBias ReadLidarBias(const std::filesystem::path& path);
 
+/// The result's chessboard_turn_rad; zero if the file has none.
+/// @throws std::runtime_error naming file, line, key, rule and value.
+Eigen::Vector2d ReadChessboardTurn(const std::filesystem::path& path);
+
 }  // namespace voqcal

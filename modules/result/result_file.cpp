@@ -120,11 +120,18 @@ std::string ToYaml(const CalibrationResult& result) {
          "side\n"
          "covariance:\n" +
          covariance + VerdictYaml(VerdictOf(result)) + Methods(result) + Averaged(result.averaged) +
-         LidarBiasYaml(result.lidar_bias) + LensCorrectionYaml(result.lens_correction) +
+         LidarBiasYaml(result.lidar_bias) +
+         "# all chessboards against the rays to their centres, about the camera's x and y, as a\n"
+         "# principal point does that is given wrongly\n"
+         "chessboard_turn_rad: [" +
+         NumberText(result.chessboard_turn_rad.x()) + ", " +
+         NumberText(result.chessboard_turn_rad.y()) + "]\n" +
+         LensCorrectionYaml(result.lens_correction) +
          "# reprojection error of the board's centre in pixels, and times the metres per pixel at "
          "the\n"
          "# board; mean distance of the board's corners; angle between the normals;\n"
-         "# all without the lidar's faults, as far as lidar_bias has them\n"
+         "# all without the lidar's faults, as far as lidar_bias has them, and "
+         "chessboard_turn_rad\n"
          "scores:\n" +
          Score("held_out", "each sample by the extrinsic refined without it", result.held_out) +
          Score("in_sample", "by the extrinsic made from these very samples", result.in_sample) +

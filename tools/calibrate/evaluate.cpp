@@ -99,7 +99,7 @@ void Evaluate(const EvaluateArgs& args) {
   RequireBoardsInImage(samples, rig.camera, T_camera_lidar, args.extrinsic);
   const LidarBias bias = ReadLidarBias(args.extrinsic);
   const SceneScore score =
-      ScoreCorrected(samples, rig.camera, T_camera_lidar, bias, Eigen::Vector2d::Zero());
+      ScoreCorrected(samples, rig.camera, T_camera_lidar, bias, ReadChessboardTurn(args.extrinsic));
   PrintPoses(samples, score);
   for (const InconsistentSample& each : consistency.inconsistent) {
     std::printf("%6lld  left out: %s\n",

@@ -59,6 +59,14 @@ std::string MethodLines(const CalibrationResult& result) {
   }
   text += ")\n";
   if (!result.scene_note.empty()) text += "scene   " + result.scene_note + "\n";
+  if (!result.chessboard_turn_rad.isZero()) {
+    const Eigen::Vector2d turn_deg = kDegPerRad * result.chessboard_turn_rad;
+    text += Format(
+        "chessboards  turned by %+.2f %+.2f deg about the camera's x and y against the rays to "
+        "them, as a principal point that is off does: taken out\n",
+        turn_deg.x(),
+        turn_deg.y());
+  }
   if (!result.lidar_bias.IsObservable()) return text + "lidar's range errors  not estimated\n";
   text += "lidar's range errors  common " + result.lidar_bias.common.Text() +
           ", dark against bright " + result.lidar_bias.dark_step.Text();

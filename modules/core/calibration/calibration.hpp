@@ -51,7 +51,9 @@ struct Calibration {
   std::string scene_note;           ///< What the scenes have to do with it, a sentence.
   std::vector<MethodTrial> trials;  ///< Every method's scores.
   AveragedPart averaged;
-  LidarBias lidar_bias;                     ///< Removed from the boards before they are scored.
+  LidarBias lidar_bias;  ///< Removed from the boards before they are scored.
+  /// Of all chessboards against their rays (SharedErrors), about the camera's x and y; removed too.
+  Eigen::Vector2d chessboard_turn_rad = Eigen::Vector2d::Zero();
   SceneScore held_out;                      ///< Each sample by the extrinsic refined without it.
   SceneScore in_sample;                     ///< Flatters: the same samples made the extrinsic.
   SceneScore of_average;                    ///< The VOQ average on all samples.

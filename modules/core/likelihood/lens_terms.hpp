@@ -25,8 +25,9 @@ struct LensTerms {
   Eigen::Index NumErrors() const { return pull.size(); }
 };
 
-/// Of two errors alone, which stand for all that are not asked for: SharedErrors' chessboard_turn,
-/// radians. The corners tell nothing of them.
+/// Of two errors alone, which stand for those of the intrinsics where these are not asked for:
+/// SharedErrors' chessboard_turn, radians. The extrinsic then goes with the intrinsics as given.
+/// The corners tell nothing of them.
 LensTerms ChessboardTurnTerms();
 
 /// @param lens_error       1 sigma of each of LensErrors, before the corners speak.

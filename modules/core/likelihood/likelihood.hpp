@@ -13,7 +13,8 @@
 namespace voqcal {
 
 /// Refines `T_camera_lidar_start` by one likelihood over all poses. Unknown are the extrinsic, the
-/// lidar's faults (LidarBias) and each board's pose, which the chessboard holds. The lidar says:
+/// lidar's faults (LidarBias), the turn that all chessboards share against their rays
+/// (ChessboardTurnTerms), and each board's pose, which the chessboard holds. The lidar says:
 /// each return's range to the board's plane, and the rays to the outline's centre and along its
 /// axes, which errors of range leave alone. A fault that the data do not narrow to half its prior
 /// stays zero, "unobservable".

@@ -13,7 +13,7 @@
 namespace voqcal {
 
 /// The shared unknowns: [extrinsic's perturbation (6); faults]. The faults in their order, after
-/// the rings the lens' errors if they are estimated:
+/// the rings what the poses' LensTerms ask for:
 constexpr Eigen::Index kExtrinsicSize = 6;
 constexpr Eigen::Index kCommon = 0;
 constexpr Eigen::Index kDarkStep = 1;
@@ -24,8 +24,9 @@ constexpr Eigen::Index kFirstRing = 4;
 /// Where the search stands.
 struct LikelihoodState {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  Eigen::VectorXd faults_m;   ///< The rise: metres a metre; the lens' errors: shares.
-  Eigen::Index num_lens = 0;  ///< How many of the faults are the lens' errors.
+  /// The rise: metres a metre; the lens' errors: shares; the chessboards' turn: radians.
+  Eigen::VectorXd faults_m;
+  Eigen::Index num_lens = 0;  ///< How many of the faults are of the LensTerms.
   std::vector<Eigen::Isometry3d> T_camera_board;
 
   Eigen::Index NumRings() const { return faults_m.size() - kFirstRing - num_lens; }

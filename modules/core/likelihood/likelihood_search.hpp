@@ -15,8 +15,8 @@ Eigen::VectorXd FaultPriorInformation(const LikelihoodOptions& options, Eigen::I
 /// A maximum-likelihood search: data, what is believed of the noise, and where it stands.
 class LikelihoodSearch {
  public:
-  /// Starts without faults, with the boards where the chessboards are. The lens' errors are among
-  /// the faults if the poses have LensTerms.
+  /// Starts without faults, with the boards where the chessboards are. What the poses' LensTerms
+  /// ask for is among the faults.
   LikelihoodSearch(std::vector<LikelihoodPose> poses,
                    const Eigen::Isometry3d& T_camera_lidar_start,
                    const LikelihoodOptions& options);

@@ -80,7 +80,7 @@ struct LikelihoodPose {
   std::array<Eigen::Vector3d, 4> corners_camera_m;  ///< Of the outline, by the chessboard.
   OutlineRays outline;
   std::vector<BoardReturn> returns;
-  LensTerms lens;  ///< Empty unless the lens is to be estimated.
+  LensTerms lens;  ///< What all chessboards share, and is to be estimated; may be empty.
 };
 
 /// @param T_camera_lidar  resolves the board's half-turn.

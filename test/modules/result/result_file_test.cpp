@@ -166,6 +166,7 @@ TEST(ReadLidarBias, ReadsWhatToYamlWrites) {
   result.lidar_bias.rings = {{0.0, 0.015, false}, {-0.01, 0.002, true}};
   result.lidar_bias.outline_rise = {1e-5, 1e-6, true};
   result.lidar_bias.shades = {3.0, 40.0};
+  result.chessboard_turn_rad = {1.0 / 300, -0.01};
   const std::string text = ToYaml(result);
   EXPECT_EQ(YAML::Load(text)["lidar_bias"]["ring_m"]["status"][0].as<std::string>(),
             "unobservable");
@@ -180,12 +181,14 @@ TEST(ReadLidarBias, ReadsWhatToYamlWrites) {
   EXPECT_FALSE(bias.outline_lift.is_observable);
   EXPECT_EQ(bias.outline_rise.value_m, 1e-5);
   EXPECT_EQ(bias.shades.bright_intensity, 40.0);
+  EXPECT_EQ(ReadChessboardTurn(folder.path() / "extrinsic.yaml"), result.chessboard_turn_rad);
 }
 
 TEST(ReadLidarBias, IsNoneWhereNoneWasEstimated) {
   const test::TemporaryFolder folder;
   EXPECT_FALSE(ReadLidarBias(folder.Write("a.yaml", ToYaml(SomeResult()))).IsObservable());
   EXPECT_FALSE(ReadLidarBias(folder.Write("b.yaml", "T_camera_lidar: {}\n")).IsObservable());
+  EXPECT_TRUE(ReadChessboardTurn(folder.path() / "b.yaml").isZero());
 }
 
 TEST(ToYaml, SaysWhereTheTransformLeads) {

@@ -17,6 +17,7 @@
 #include "core/geometry/rigid.hpp"
 #include "core/least_samples.hpp"
 #include "core/median.hpp"
+#include "core/sensor_network/common_boards.hpp"
 #include "core/sensor_network/sensor_network.hpp"
 #include "core/units.hpp"
 #include "figures/figures.hpp"
@@ -100,7 +101,8 @@ class RigRun {
     session_ = SimulateRigSession(simulation_, rig_);
   }
 
-  // The published method on each pair that has samples enough; what fails is said.
+  // The published method on each lidar and camera that have samples enough, what fails is said; and
+  // cameras that share boards.
   std::vector<SensorPair> CalibratePairs() const {
     std::vector<SensorPair> pairs;
     for (std::size_t l = 0; l < simulation_.lidars.size(); ++l) {
@@ -122,6 +124,14 @@ class RigRun {
         }
         pairs.push_back(
             {lidar, camera, outcome.refined.T_camera_lidar, outcome.refined.covariance});
+      }
+    }
+    for (std::size_t a = 0; a < simulation_.cameras.size(); ++a) {
+      for (std::size_t b = a + 1; b < simulation_.cameras.size(); ++b) {
+        const SimulatedCamera& to = simulation_.cameras[b];
+        const auto pair = PairOfCameras(
+            simulation_.cameras[a].name, to.name, session_.CommonBoards(a, b), to.model);
+        if (pair) pairs.push_back(*pair);
       }
     }
     return pairs;

@@ -38,6 +38,17 @@ std::vector<BoardSample> RigSession::Samples(std::size_t lidar, std::size_t came
   return samples;
 }
 
+std::vector<CommonBoard> RigSession::CommonBoards(std::size_t from_camera,
+                                                  std::size_t to_camera) const {
+  std::vector<CommonBoard> boards;
+  for (const auto& at_stop : cameras) {
+    const auto& from = at_stop[from_camera];
+    const auto& to = at_stop[to_camera];
+    if (from && to) boards.push_back({from->pose, to->pose});
+  }
+  return boards;
+}
+
 RigSession SimulateRigSession(const RigSimulationOptions& simulation, const Rig& rig) {
   const RigSimulation world(simulation, rig.board);
   test::Random random(simulation.world.seed);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/board/board_sample.hpp"
+#include "core/sensor_network/common_boards.hpp"
 #include "core/simulation/rig_simulation.hpp"
 #include "rig/rig.hpp"
 
@@ -18,6 +19,7 @@ struct RigSession {
 
   /// The stops at which both see it.
   std::vector<BoardSample> Samples(std::size_t lidar, std::size_t camera) const;
+  std::vector<CommonBoard> CommonBoards(std::size_t from_camera, std::size_t to_camera) const;
 };
 
 /// Sweeps through the detector; corners by projection with noise of 0.1 px, and what the camera

@@ -43,6 +43,17 @@ struct SharedErrors {
 /// what the scan lines' offsets do to the outline's plane.
 constexpr SharedErrors kPriorSharedErrors{0.03, 0.002, 0.001};
 
+/// What is known of the errors of a session's sightings before it speaks: those of a lidar and a
+/// camera, unless told otherwise.
+struct ErrorPriors {
+  SightingErrors sighting = kPriorErrors;
+  SharedErrors shared = kPriorSharedErrors;
+};
+
+/// Of two cameras: by order of magnitude what a lens model's errors do to a board. They have none
+/// of a lidar's shared errors.
+constexpr ErrorPriors kCameraErrorPriors{{0.003, 0.001, 0.005, 0.001}, {1e-6, 1e-6, 1e-6}};
+
 /// How one board's covariance grows with the square of each error, in the order of the struct.
 std::array<Matrix6d, 4> UnitCovariances(const BoardPose& pose_camera);
 

@@ -87,6 +87,22 @@ struct RigTallies {
   int num_failed = 0;
 };
 
+// Calibrate's extrinsic, or why there is none; its assessment takes most of the time.
+BestExtrinsic Refined(const std::vector<BoardSample>& samples, const CalibrationTask& task) {
+  const auto failed = [](const std::string& problem) {
+    BestExtrinsic none;
+    none.problem = problem;
+    return none;
+  };
+  const ChosenSamples chosen = ChooseSamples(samples, task.camera, task.options.consistency);
+  const ChosenSets sets = ChooseSets(chosen, task);
+  if (!sets.problem.empty()) return failed(sets.problem);
+  const std::vector<const BoardSample*> used = chosen.Used();
+  const AveragedSets averaged = AverageSets(used, sets.sets, task);
+  if (!averaged.problem.empty()) return failed(averaged.problem);
+  return RefineBest(used, task.camera, averaged.average, {}, task.options.refinement);
+}
+
 class RigRun {
  public:
   RigRun(const RigArgs& args, std::uint32_t seed)
@@ -111,19 +127,18 @@ class RigRun {
         if (samples.size() < kLeastSamples) continue;
         CalibrationTask task = rig_.Task();
         task.camera = simulation_.cameras[c].model;
-        const CalibrationOutcome outcome = Calibrate(samples, {}, task);
+        const BestExtrinsic refined = Refined(samples, task);
         const std::string& lidar = simulation_.lidars[l].name;
         const std::string& camera = simulation_.cameras[c].name;
-        if (!outcome.problem.empty()) {
+        if (!refined.problem.empty()) {
           std::printf("seed %u, %s - %s: %s\n",
                       simulation_.world.seed,
                       lidar.c_str(),
                       camera.c_str(),
-                      outcome.problem.c_str());
+                      refined.problem.c_str());
           continue;
         }
-        pairs.push_back(
-            {lidar, camera, outcome.refined.T_camera_lidar, outcome.refined.covariance});
+        pairs.push_back({lidar, camera, refined.T_camera_lidar, refined.covariance});
       }
     }
     for (std::size_t a = 0; a < simulation_.cameras.size(); ++a) {

@@ -231,6 +231,20 @@ TEST(JoinPairs, NamesAllThatMayBeWrong) {
   EXPECT_GT(std::sqrt(joined.covariance(5, 5)), 0.02);
 }
 
+// A camera with two pairs: either may be the wrong one, the other sensors' loops are clear.
+TEST(JoinPairs, DoubtsOnlyWhatMayBeWrong) {
+  Rigged rig(kFive, 12);
+  std::vector<SensorPair> pairs = rig.AllNoisy(2);
+  pairs[4].T_to_from.translation().x() += 0.05;  // lidar_b - left
+  const SensorNetwork network = JoinPairs(kFive, "lidar_a", pairs);
+  EXPECT_THAT(network.doubtful, ElementsAre(1, 4));
+  EXPECT_FALSE(network.is_left_out);
+  EXPECT_THAT(network.Between("front", "rear").T_to_from,
+              test::IsNear(rig.Truth("front", "rear"), 0.1 * kRadPerDeg, 5e-3));
+  EXPECT_LT(std::sqrt(network.Between("front", "rear").covariance(3, 3)), 3e-3);
+  EXPECT_GT(std::sqrt(network.Between("lidar_b", "left").covariance(3, 3)), 0.02);
+}
+
 TEST(JoinPairs, SaysWhichSensorsToJoin) {
   Rigged rig(kFive, 10);
   const SensorNetwork network =

@@ -55,9 +55,9 @@ VerdictCheck CheckPairs(const RigExtrinsics& result) {
   for (const CalibratedPair& pair : result.pairs) {
     if (IsLeftOut(result, pair)) continue;
     ++num_used;
-    if (pair.verdict.grade == Grade::kGood) continue;
+    if (!pair.HasSession() || pair.verdict.grade == Grade::kGood) continue;
     wanting +=
-        (wanting.empty() ? "" : ", ") + pair.folder + " (" + ToString(pair.verdict.grade) + ")";
+        (wanting.empty() ? "" : ", ") + pair.Name() + " (" + ToString(pair.verdict.grade) + ")";
     // What hangs on this pair alone is as bad as it.
     const bool is_alone = ClosureOf(result, pair) == nullptr;
     check.grade = std::max(
@@ -77,7 +77,7 @@ VerdictCheck CheckLeftOut(const RigExtrinsics& result) {
   VerdictCheck check = {"Pairs left out", Grade::kGood, ""};
   for (const CalibratedPair& pair : result.pairs) {
     if (pair.problem.empty()) continue;
-    check.text += (check.text.empty() ? "" : "; ") + pair.folder + ": " + pair.problem;
+    check.text += (check.text.empty() ? "" : "; ") + pair.Name() + ": " + pair.problem;
   }
   check.text = check.text.empty() ? "None." : check.text + ". They stand by what others say.";
   return check;
@@ -89,8 +89,7 @@ VerdictCheck CheckClosure(const RigExtrinsics& result) {
   if (network.closures.empty()) {
     return {"Closure",
             Grade::kLook,
-            "No pair can be tested by others: that takes two lidars and two cameras that all see "
-            "the board."};
+            "No pair can be tested by others: that takes a sensor that sees the board with both."};
   }
   Vector6d largest = Vector6d::Zero();
   for (const PairClosure& closure : network.closures) {
@@ -132,13 +131,21 @@ std::string JointCovarianceYaml(const SensorNetwork& network) {
 
 /// What is said of the pair by itself.
 std::string OwnYaml(const RigExtrinsics& result, const CalibratedPair& pair) {
-  std::string text = "    calibrated: {folder: " + QuotedYaml(pair.folder);
-  if (!pair.problem.empty()) return text + ", problem: " + QuotedYaml(pair.problem) + "}\n";
-  text += ", is_used: " + std::string(IsLeftOut(result, pair) ? "false" : "true") +
-          ", grade: " + ToString(pair.verdict.grade) +
-          ", num_samples: " + std::to_string(pair.num_samples) +
-          ",\n                 headline: " + QuotedYaml(pair.verdict.headline) +
-          ",\n                 samples_sha256: " + QuotedYaml(pair.samples_sha256) + "}\n";
+  if (!pair.problem.empty()) {
+    return "    calibrated: {folder: " + QuotedYaml(pair.folder) +
+           ", problem: " + QuotedYaml(pair.problem) + "}\n";
+  }
+  std::string text =
+      "    calibrated: {is_used: " + std::string(IsLeftOut(result, pair) ? "false" : "true") +
+      ", num_samples: " + std::to_string(pair.num_samples);
+  if (pair.HasSession()) {
+    const std::string indent = ",\n                 ";
+    text += indent + "folder: " + QuotedYaml(pair.folder) +
+            ", grade: " + ToString(pair.verdict.grade) + indent +
+            "headline: " + QuotedYaml(pair.verdict.headline) + indent +
+            "samples_sha256: " + QuotedYaml(pair.samples_sha256);
+  }
+  text += "}\n";
   const PairClosure* closure = ClosureOf(result, pair);
   if (closure == nullptr) return text;
   return text + "    closure: {rotation_deg: " + NumberText(DegreesOf(closure->difference)) +
@@ -206,12 +213,14 @@ std::string SensorLines(const SensorNetwork& network) {
 std::string PairLines(const RigExtrinsics& result) {
   std::string text = "pairs (own verdict; against what the others say of it)\n";
   for (const CalibratedPair& pair : result.pairs) {
-    text += Format("  %-20s ", pair.folder.c_str());
+    text += Format("  %-20s ", pair.Name().c_str());
     if (!pair.problem.empty()) {
       text += "left out: " + pair.problem + "\n";
       continue;
     }
-    text += Format("%-4s %3d samples, ", ToString(pair.verdict.grade).c_str(), pair.num_samples) +
+    text += Format("%-4s %3d samples, ",
+                   pair.HasSession() ? ToString(pair.verdict.grade).c_str() : "-",
+                   pair.num_samples) +
             SigmaText(pair.extrinsic.covariance);
     if (const PairClosure* closure = ClosureOf(result, pair)) {
       text += Format("; closure %.3f deg, %.1f mm%s",

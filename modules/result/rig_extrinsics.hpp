@@ -15,15 +15,19 @@ namespace voqcal {
 /// Name of a rig's result in its folder.
 inline constexpr char kRigResultName[] = "rig_extrinsics.yaml";
 
-/// A lidar and a camera of a rig, as they were calibrated by themselves.
+/// Two sensors of a rig, as they were calibrated by themselves: a lidar and a camera, or two
+/// cameras by the boards that both saw.
 struct CalibratedPair {
-  SensorPair extrinsic;  ///< From the lidar to the camera.
-  std::string folder;    ///< Of its own session, within the rig's.
-  Verdict verdict;       ///< Its own.
-  int num_samples = 0;   ///< That it was made from.
+  SensorPair extrinsic;
+  std::string folder;   ///< Of its own session, within the rig's; two cameras have none.
+  Verdict verdict;      ///< That session's.
+  int num_samples = 0;  ///< Poses of the board that it was made from.
   std::string samples_sha256;
   /// Why there is no extrinsic of it, in one line; empty if there is one.
   std::string problem;
+
+  bool HasSession() const { return !folder.empty(); }
+  std::string Name() const { return extrinsic.from + "_" + extrinsic.to; }
 };
 
 /// Everything that rig_extrinsics.yaml says.

@@ -1,10 +1,12 @@
 #include "calibrate_rig/calibrate_pairs.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -15,7 +17,9 @@
 #include "calibrate/finish_session.hpp"
 #include "calibrate/offline_run.hpp"
 #include "common/progress.hpp"
+#include "core/geometry/rigid.hpp"
 #include "core/parallel.hpp"
+#include "core/sensor_network/common_boards.hpp"
 
 namespace voqcal {
 namespace {
@@ -108,30 +112,56 @@ std::size_t MostAtOnce() {
   return static_cast<std::size_t>(std::max(1.0, free_bytes / kBytesOfPair));
 }
 
-CalibratedPair Calibrate(const Rig& rig,
-                         const std::filesystem::path& log,
-                         bool use_log_times,
-                         const BoardsOfPair& boards,
-                         const RigFolders& folders) {
+/// A pose of the board in a session, as its camera saw it.
+struct SeenBoard {
+  std::int64_t camera_utime = 0;
+  BoardPose pose;
+};
+
+/// A pair, and what its camera saw.
+struct Session {
   CalibratedPair pair;
+  std::vector<SeenBoard> boards;
+};
+
+std::vector<SeenBoard> BoardsOf(const OfflineRun& run) {
+  const auto& result = run.assessor().result();
+  std::vector<SeenBoard> boards;
+  for (const BoardSample& sample : run.samples()) {
+    const bool is_used =
+        !result || std::count(result->used_ids.begin(), result->used_ids.end(), sample.id) > 0;
+    if (is_used) boards.push_back({sample.camera_utime, sample.camera.pose});
+  }
+  return boards;
+}
+
+Session Calibrate(const Rig& rig,
+                  const std::filesystem::path& log,
+                  bool use_log_times,
+                  const BoardsOfPair& boards,
+                  const RigFolders& folders) {
+  Session calibrated;
+  CalibratedPair& pair = calibrated.pair;
   pair.folder = FolderOf(rig);
   pair.extrinsic.from = rig.lidar_name;
   pair.extrinsic.to = rig.camera_name;
-  const SessionFolders session = {folders.scratch / pair.folder, folders.out / pair.folder};
-  std::filesystem::create_directories(session.scratch);
-  OfflineRun run(rig, session.scratch, boards);
+  const SessionFolders session_folders = {folders.scratch / pair.folder, folders.out / pair.folder};
+  std::filesystem::create_directories(session_folders.scratch);
+  OfflineRun run(rig, session_folders.scratch, boards);
   const auto times = use_log_times ? RecordingTimes::kLog : RecordingTimes::kStamps;
   run.FeedLog(
       log, [](double, std::size_t) {}, times);
   try {
-    FinishSession(rig, log, session, &run);
+    FinishSession(rig, log, session_folders, &run);
   } catch (const NoCalibration& error) {
     std::istringstream lines(error.what());
     for (std::string line; std::getline(lines, line);) spdlog::warn("{}: {}", pair.folder, line);
     pair.problem = run.samples().empty() ? "the two never saw the board rest at one time"
                                          : run.assessor().problem();
-    return pair;
+    calibrated.boards = BoardsOf(run);
+    return calibrated;
   }
+  calibrated.boards = BoardsOf(run);
   const CalibrationResult& result = *run.assessor().result();
   pair.extrinsic.T_to_from = result.T_camera_lidar;
   pair.extrinsic.covariance = result.covariance;
@@ -141,7 +171,71 @@ CalibratedPair Calibrate(const Rig& rig,
   if (!result.covariance.allFinite()) {
     pair.problem = "its poses are too few to tell how certain it is";
   }
+  return calibrated;
+}
+
+/// A pose that is in the list already would count twice.
+bool IsNew(const BoardPose& pose,
+           const std::vector<CommonBoard>& boards,
+           const SamplePickerOptions& options) {
+  return std::none_of(boards.begin(), boards.end(), [&](const CommonBoard& each) {
+    return (each.from.centre_m - pose.centre_m).norm() < options.min_new_distance_m &&
+           AngleBetween(each.from.normal, pose.normal) < options.min_new_angle_rad;
+  });
+}
+
+/// Adds the poses that both cameras saw at one time. Each session's board was at rest.
+void AddCommon(const std::vector<SeenBoard>& from,
+               const std::vector<SeenBoard>& to,
+               const SamplePickerOptions& options,
+               std::vector<CommonBoard>* boards) {
+  for (const SeenBoard& each : from) {
+    for (const SeenBoard& other : to) {
+      const double apart_s =
+          1e-6 * static_cast<double>(std::abs(each.camera_utime - other.camera_utime));
+      if (apart_s > options.max_pair_offset_s || !IsNew(each.pose, *boards, options)) continue;
+      boards->push_back({each.pose, other.pose});
+    }
+  }
+}
+
+/// Two cameras, by what their sessions have in common; nothing if that is too little.
+std::optional<CalibratedPair> CalibrateCameras(const Rig& from,
+                                               const Rig& to,
+                                               const std::vector<Rig>& rigs,
+                                               const std::vector<Session>& sessions) {
+  std::vector<CommonBoard> boards;
+  for (std::size_t i = 0; i < rigs.size(); ++i) {
+    for (std::size_t j = 0; j < rigs.size(); ++j) {
+      if (rigs[i].camera_name != from.camera_name || rigs[j].camera_name != to.camera_name)
+        continue;
+      AddCommon(sessions[i].boards, sessions[j].boards, from.sample_collector, &boards);
+    }
+  }
+  const auto extrinsic = PairOfCameras(from.camera_name, to.camera_name, boards, to.camera);
+  if (!extrinsic || !extrinsic->covariance.allFinite()) return std::nullopt;
+  CalibratedPair pair;
+  pair.extrinsic = *extrinsic;
+  pair.num_samples = static_cast<int>(boards.size());
   return pair;
+}
+
+void AddPairsOfCameras(const std::vector<Rig>& rigs,
+                       const std::vector<Session>& sessions,
+                       std::vector<CalibratedPair>* pairs) {
+  std::vector<const Rig*> cameras;
+  for (const Rig& rig : rigs) {
+    const bool is_there = std::any_of(cameras.begin(), cameras.end(), [&rig](const Rig* each) {
+      return each->camera_name == rig.camera_name;
+    });
+    if (!is_there) cameras.push_back(&rig);
+  }
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    for (std::size_t j = i + 1; j < cameras.size(); ++j) {
+      const auto pair = CalibrateCameras(*cameras[i], *cameras[j], rigs, sessions);
+      if (pair) pairs->push_back(*pair);
+    }
+  }
 }
 
 }  // namespace
@@ -154,16 +248,19 @@ std::vector<CalibratedPair> CalibratePairs(const std::vector<Rig>& pairs,
                                            const RigFolders& folders) {
   const std::vector<bool> use_log_times = UseLogTimes(pairs, log, times);
   const BoardsBySensor boards = Detect(DetectionsOf(pairs, use_log_times), log);
-  std::vector<CalibratedPair> calibrated(pairs.size());
+  std::vector<Session> sessions(pairs.size());
   ParallelFor(
       pairs.size(),
       [&](std::size_t i) {
         const bool use_log = use_log_times[i];
         const BoardsOfPair own = {boards.at({pairs[i].lidar_name, use_log}).get(),
                                   boards.at({pairs[i].camera_name, use_log}).get()};
-        calibrated[i] = Calibrate(pairs[i], log, use_log, own, folders);
+        sessions[i] = Calibrate(pairs[i], log, use_log, own, folders);
       },
       MostAtOnce());
+  std::vector<CalibratedPair> calibrated;
+  for (const Session& session : sessions) calibrated.push_back(session.pair);
+  AddPairsOfCameras(pairs, sessions, &calibrated);
   return calibrated;
 }
 

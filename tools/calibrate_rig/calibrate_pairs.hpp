@@ -20,7 +20,8 @@ struct RigFolders {
 std::string FolderOf(const Rig& pair);
 
 /// Does with each pair of a rig what calibrate does, but detects the boards of each sensor once for
-/// all its pairs. Each pair's session is that of calibrate, byte for byte.
+/// all its pairs. Each pair's session is that of calibrate, byte for byte. Behind them come the
+/// pairs of cameras whose sessions have at least three boards in common.
 ///
 /// @throws std::runtime_error naming the log and the cause. That a pair gives no calibration is not
 ///     thrown but told, and its `problem`.

@@ -154,7 +154,7 @@ void RequireOnePiece(const CalibrateRigArgs& args, const RigExtrinsics& result) 
   if (result.network.IsUsable()) return;
   std::string text = args.log.string() + ": no calibration of the rig: " + result.network.problem;
   for (const CalibratedPair& pair : result.pairs) {
-    if (!pair.problem.empty()) text += "\n" + pair.folder + ": " + pair.problem;
+    if (!pair.problem.empty()) text += "\n" + pair.Name() + ": " + pair.problem;
   }
   const std::filesystem::path earlier = args.out / kRigResultName;
   if (std::filesystem::exists(earlier)) text += "\n" + earlier.string() + " is of an earlier run";

@@ -129,6 +129,20 @@ TEST(RigExtrinsics, APairWithoutACalibrationIsToldAndFollowsFromTheOthers) {
                     HasSubstr("Closure: No pair can be tested by others")));
 }
 
+TEST(RigExtrinsics, TwoCamerasMayBeAPairWithoutASession) {
+  RigExtrinsics result = TwoByTwo();
+  CalibratedPair stereo = Pair("left", "right");
+  stereo.extrinsic.T_to_from = T_top_sensor("right").inverse() * T_top_sensor("left");
+  stereo.folder.clear();
+  result.pairs.push_back(stereo);
+  Join(&result);
+  const YAML::Node pair = PairIn(YAML::Load(ToYaml(result)), "left", "right");
+  EXPECT_EQ(pair["calibrated"]["num_samples"].as<int>(), 30);
+  EXPECT_FALSE(pair["calibrated"]["folder"]);
+  EXPECT_NEAR(pair["closure"]["rotation_deg"].as<double>(), 0, 1e-6);
+  EXPECT_THAT(Summary(result), HasSubstr("left_right           -     30 samples"));
+}
+
 TEST(RigExtrinsics, ABadPairThatNothingElseTestsMakesTheRigBad) {
   RigExtrinsics tested = TwoByTwo();
   tested.pairs[2].verdict.grade = Grade::kBad;

@@ -48,6 +48,15 @@ bool IsLeftOut(const RigExtrinsics& result, const CalibratedPair& pair) {
 double DegreesOf(const Vector6d& difference) { return kDegPerRad * difference.head<3>().norm(); }
 double MillimetresOf(const Vector6d& difference) { return 1e3 * difference.tail<3>().norm(); }
 
+/// "bad: The whole scene".
+std::string WorstOf(const Verdict& verdict) {
+  std::string names;
+  for (const VerdictCheck& check : verdict.checks) {
+    if (check.grade == verdict.grade) names += (names.empty() ? ": " : ", ") + check.name;
+  }
+  return ToString(verdict.grade) + names;
+}
+
 VerdictCheck CheckPairs(const RigExtrinsics& result) {
   VerdictCheck check = {"Pairs", Grade::kGood, ""};
   std::string wanting;
@@ -56,8 +65,7 @@ VerdictCheck CheckPairs(const RigExtrinsics& result) {
     if (IsLeftOut(result, pair)) continue;
     ++num_used;
     if (!pair.HasSession() || pair.verdict.grade == Grade::kGood) continue;
-    wanting +=
-        (wanting.empty() ? "" : ", ") + pair.Name() + " (" + ToString(pair.verdict.grade) + ")";
+    wanting += (wanting.empty() ? "" : "; ") + pair.Name() + " (" + WorstOf(pair.verdict) + ")";
     // What hangs on this pair alone is as bad as it.
     const bool is_alone = ClosureOf(result, pair) == nullptr;
     check.grade = std::max(

@@ -149,7 +149,10 @@ TEST(RigExtrinsics, ABadPairThatNothingElseTestsMakesTheRigBad) {
   EXPECT_EQ(VerdictOf(tested).grade, Grade::kLook);
   RigExtrinsics alone = WithOneLeftOut();
   alone.pairs[2].verdict.grade = Grade::kBad;
+  alone.pairs[2].verdict.checks = {{"Number of poses", Grade::kBad, "Only 4."}};
   EXPECT_EQ(VerdictOf(alone).grade, Grade::kBad);
+  EXPECT_THAT(Summary(alone),
+              HasSubstr("Not good by themselves: side_left (bad: Number of poses)"));
 }
 
 TEST(RigExtrinsics, AContradictionIsSaid) {

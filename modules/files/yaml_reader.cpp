@@ -161,6 +161,7 @@ YamlSection::YamlSection(YamlDocument* document, YAML::Node node, std::string pa
     }
     const auto [entry, is_new] =
         entries_.try_emplace(item.first.Scalar(), Entry{item.second, key_line, false});
+    if (is_new) keys_.push_back(entry->first);
     if (!is_new) {
       document_->AddError(key_line,
                           PathOf(entry->first) + " is given twice, first on line " +

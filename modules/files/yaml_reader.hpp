@@ -56,6 +56,9 @@ class YamlSection {
 
   bool Has(const std::string& key) const { return entries_.count(key) > 0; }
 
+  /// Every key that is given, in the file's order.
+  const std::vector<std::string>& keys() const { return keys_; }
+
   void Read(const std::string& key, double* value);  ///< Finite.
   void Read(const std::string& key, int* value);
   void Read(const std::string& key, std::uint32_t* value);
@@ -111,6 +114,7 @@ class YamlSection {
   std::string path_;  ///< "camera"; empty at the top level.
   int line_;
   std::map<std::string, Entry> entries_;
+  std::vector<std::string> keys_;
   std::set<std::string> known_;  ///< Keys that were asked for.
   bool is_required_ = false;
   std::string remedy_;  ///< Of the required key that is read.

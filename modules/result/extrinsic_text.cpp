@@ -35,15 +35,6 @@ std::string List(const Values& values) {
   return "[" + Join(values, ", ") + "]";
 }
 
-std::string Rows(const Eigen::Matrix4d& matrix, const std::string& indent) {
-  std::string text;
-  for (int i = 0; i < 4; ++i) {
-    const Eigen::RowVector4d row = matrix.row(i);
-    text += indent + "- " + List(row) + "\n";
-  }
-  return text;
-}
-
 /// x y z w, w >= 0.
 Eigen::Vector4d QuaternionXyzw(const Eigen::Isometry3d& T) {
   const Eigen::Quaterniond q = Eigen::Quaterniond(T.linear()).normalized();
@@ -82,8 +73,8 @@ std::vector<std::string> Explanation(const ExportedExtrinsic& extrinsic, const s
     std::snprintf(text, sizeof(text), ", pixel (%.3f, %.3f)", pixel_px.x(), pixel_px.y());
     example += text;
   }
-  return {"parent: " + extrinsic.parent + " (the lidar); child: " + extrinsic.child +
-              " (the camera's optical frame: x right, y down, z forward). Metres, radians.",
+  return {"parent: " + extrinsic.parent + " (" + extrinsic.parent_kind +
+              "); child: " + extrinsic.child + " (" + extrinsic.child_kind + "). Metres, radians.",
           what,
           example + "."};
 }
@@ -156,38 +147,15 @@ std::string UrdfText(const ExportedExtrinsic& extrinsic) {
          Join(RollPitchYaw(T_lidar_camera.linear()), " ") + "\"/>\n</joint>\n";
 }
 
-// libbot2, bot2-frames: quaternions are w x y z, and a frame's transform takes its coordinates to
-// those of the frame that it is relative to.
 std::string BotFramesText(const ExportedExtrinsic& extrinsic) {
-  const Eigen::Isometry3d T_lidar_camera = extrinsic.T_camera_lidar.inverse();
-  const Eigen::Vector3d t = T_lidar_camera.translation();
-  const Eigen::Vector4d q = QuaternionXyzw(T_lidar_camera);
-  const Eigen::Vector4d q_wxyz(q[3], q[0], q[1], q[2]);
   return Comments(extrinsic, PoseLine(extrinsic) + " quat is w x y z.") +
-         "coordinate_frames {\n  root_frame = \"" + extrinsic.parent + "\";\n  " + extrinsic.child +
-         " {\n    relative_to = \"" + extrinsic.parent +
-         "\";\n    history = 0;  # it does not move\n    initial_transform {\n      translation "
-         "= " +
-         List(t) + ";\n      quat = " + List(q_wxyz) + ";\n    }\n  }\n}\n";
-}
-
-/// Kalibr's lens of our camera; empty if it has none ("radtan" is k1 k2 p1 p2).
-std::string KalibrLens(const CameraModel& camera) {
-  const bool is_equidistant = camera.lens == LensModel::kEquidistant;
-  const bool is_radtan = camera.lens == LensModel::kPlumbBob && camera.distortion[4] == 0;
-  if (!is_equidistant && !is_radtan) return "";
-  const std::vector<double> distortion(camera.distortion.begin(), camera.distortion.begin() + 4);
-  const std::vector<double> intrinsics{camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px};
-  return std::string("  camera_model: pinhole\n  distortion_model: ") +
-         (is_equidistant ? "equidistant" : "radtan") +
-         "\n  distortion_coeffs: " + List(distortion) + "\n  intrinsics: " + List(intrinsics) +
-         "\n  resolution: [" + std::to_string(camera.width_px) + ", " +
-         std::to_string(camera.height_px) + "]\n";
+         "coordinate_frames {\n  root_frame = \"" + extrinsic.parent + "\";\n" +
+         BotFrame(extrinsic) + "}\n";
 }
 
 std::string KalibrText(const ExportedExtrinsic& extrinsic) {
   return Comments(extrinsic, ProjectionLine(extrinsic, "T_cam_lidar")) + "cam0:\n  T_cam_lidar:\n" +
-         Rows(extrinsic.T_camera_lidar.matrix(), "  ") +
+         ExactRows(extrinsic.T_camera_lidar.matrix(), "  ") +
          (extrinsic.camera ? KalibrLens(*extrinsic.camera) : "");
 }
 
@@ -282,6 +250,42 @@ const std::vector<std::pair<std::string, Formatter>>& Formatters() {
 }
 
 }  // namespace
+
+// libbot2, bot2-frames: quaternions are w x y z, and a frame's transform takes its coordinates to
+// those of the frame that it is relative to.
+std::string BotFrame(const ExportedExtrinsic& extrinsic) {
+  const Eigen::Isometry3d T_lidar_camera = extrinsic.T_camera_lidar.inverse();
+  const Eigen::Vector3d t = T_lidar_camera.translation();
+  const Eigen::Vector4d q = QuaternionXyzw(T_lidar_camera);
+  const Eigen::Vector4d q_wxyz(q[3], q[0], q[1], q[2]);
+  return "  " + extrinsic.child + " {\n    relative_to = \"" + extrinsic.parent +
+         "\";\n    history = 0;  # it does not move\n    initial_transform {\n      translation "
+         "= " +
+         List(t) + ";\n      quat = " + List(q_wxyz) + ";\n    }\n  }\n";
+}
+
+// "radtan" is k1 k2 p1 p2.
+std::string KalibrLens(const CameraModel& camera) {
+  const bool is_equidistant = camera.lens == LensModel::kEquidistant;
+  const bool is_radtan = camera.lens == LensModel::kPlumbBob && camera.distortion[4] == 0;
+  if (!is_equidistant && !is_radtan) return "";
+  const std::vector<double> distortion(camera.distortion.begin(), camera.distortion.begin() + 4);
+  const std::vector<double> intrinsics{camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px};
+  return std::string("  camera_model: pinhole\n  distortion_model: ") +
+         (is_equidistant ? "equidistant" : "radtan") +
+         "\n  distortion_coeffs: " + List(distortion) + "\n  intrinsics: " + List(intrinsics) +
+         "\n  resolution: [" + std::to_string(camera.width_px) + ", " +
+         std::to_string(camera.height_px) + "]\n";
+}
+
+std::string ExactRows(const Eigen::Matrix4d& matrix, const std::string& indent) {
+  std::string text;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::RowVector4d row = matrix.row(i);
+    text += indent + "- " + List(row) + "\n";
+  }
+  return text;
+}
 
 std::vector<std::string> ExportedExtrinsic::Problems() const {
   std::vector<std::string> problems;

@@ -10,11 +10,14 @@
 
 namespace voqcal {
 
-/// What an exported transform is between. The parent is always the lidar, the child the camera.
+/// What an exported transform is between. The parent is the lidar and the child the camera, unless
+/// the kinds say otherwise.
 struct ExportedExtrinsic {
-  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  std::string parent = "lidar";       ///< Name of the lidar's frame.
-  std::string child = "camera";       ///< Name of the camera's optical frame.
+  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();  ///< From parent to child.
+  std::string parent = "lidar";                                      ///< Name of the lidar's frame.
+  std::string child = "camera";  ///< Name of the camera's optical frame.
+  std::string parent_kind = "the lidar";
+  std::string child_kind = "the camera's optical frame: x right, y down, z forward";
   std::optional<CameraModel> camera;  ///< For formats that carry the lens, and the example's pixel.
 
   /// One line for each name that some format could not carry; empty if all can.
@@ -47,5 +50,14 @@ const std::vector<std::string>& ExportFormats();
 /// @throws std::invalid_argument with one line that lists the formats, if `format` is none of them,
 ///     or with its FormatProblem.
 std::string ExtrinsicText(const std::string& format, const ExportedExtrinsic& extrinsic);
+
+/// Parts of these, for what holds several (tree_text.hpp).
+
+/// A frame of the coordinate_frames block.
+std::string BotFrame(const ExportedExtrinsic& extrinsic);
+/// A camera's lens in a camchain; empty if Kalibr has no such lens.
+std::string KalibrLens(const CameraModel& camera);
+/// A 4x4 matrix in YAML, a line a row.
+std::string ExactRows(const Eigen::Matrix4d& matrix, const std::string& indent);
 
 }  // namespace voqcal

@@ -1,5 +1,9 @@
 #include "rig/rig.hpp"
 
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
 #include <arpa/inet.h>
 
 #include "core/problems.hpp"
@@ -60,20 +64,87 @@ CalibrationTask Rig::Task() const {
 namespace {
 
 Rig Load(const std::filesystem::path& path, LensInRig* lens) {
-  const std::string text = ReadWholeFile(path);
-  YamlDocument document(path.string(), text);
+  const RigPlace place = PlaceOfRig(path);
+  const std::string text = ReadWholeFile(place.file);
+  YamlDocument document(place.file.string(), text);
   Rig rig;
   rig.path = path;
   rig.sha256 = Sha256OfBytes(text);
-  ReadRigSections(&document, &rig, lens);
+  ReadRigSections(place, &document, &rig, lens);
   document.ThrowIfWrong();
   return rig;
 }
 
+bool Has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Those of `sensors` that `names` names; all of them if it names none.
+std::vector<std::string> Meant(const std::vector<std::string>& sensors,
+                               const std::vector<std::string>& names) {
+  std::vector<std::string> meant;
+  for (const std::string& each : sensors) {
+    if (Has(names, each)) meant.push_back(each);
+  }
+  return meant.empty() ? sensors : meant;
+}
+
+std::vector<std::string> LinesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 }  // namespace
+
+RigPlace PlaceOfRig(const std::filesystem::path& path) {
+  const std::string text = path.string();
+  const std::size_t hash = text.rfind('#');
+  std::error_code ignored;  // told by whoever reads it
+  if (hash == std::string::npos || std::filesystem::is_regular_file(path, ignored))
+    return {path, {}};
+  RigPlace place = {text.substr(0, hash), {}};
+  std::istringstream names(text.substr(hash + 1));
+  for (std::string name; std::getline(names, name, ',');) place.names.push_back(name);
+  return place;
+}
 
 Rig LoadRig(const std::filesystem::path& path) { return Load(path, nullptr); }
 
 Rig LoadRig(const std::filesystem::path& path, LensInRig* lens) { return Load(path, lens); }
+
+std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path) {
+  const RigPlace place = PlaceOfRig(path);
+  YamlDocument document(place.file.string(), ReadWholeFile(place.file));
+  const RigSensors sensors = ReadRigSensors(place, &document);
+  if (sensors.lidars.empty()) return {path};
+  std::vector<std::filesystem::path> paths;
+  for (const std::string& lidar : Meant(sensors.lidars, place.names)) {
+    for (const std::string& camera : Meant(sensors.cameras, place.names)) {
+      paths.emplace_back(place.file.string() + "#" + lidar + "," + camera);
+    }
+  }
+  return paths;
+}
+
+std::vector<Rig> LoadPairs(const std::filesystem::path& path) {
+  std::vector<Rig> rigs;
+  std::vector<std::string> problems;
+  for (const std::filesystem::path& each : PairsOfRig(path)) {
+    try {
+      rigs.push_back(LoadRig(each));
+    } catch (const std::runtime_error& error) {
+      for (const std::string& line : LinesOf(error.what())) {
+        const bool is_told = std::find(problems.begin(), problems.end(), line) != problems.end();
+        if (!is_told) problems.push_back(line);
+      }
+    }
+  }
+  std::string text;
+  for (const std::string& line : problems) text += (text.empty() ? "" : "\n") + line;
+  if (!problems.empty()) throw std::runtime_error(text);
+  return rigs;
+}
 
 }  // namespace voqcal

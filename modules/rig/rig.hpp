@@ -123,11 +123,15 @@ struct ExtrinsicMonitorOptions {
   SceneWindowOptions window;
 };
 
-/// Everything that a rig file says. Every option of every module has its place here.
+/// Everything that a rig file says of one lidar and one camera. Every option of every module has
+/// its place here.
 struct Rig {
-  std::string name;
-  std::filesystem::path path;
-  std::string sha256;  ///< Of the file's bytes, lower-case hex.
+  std::string rig_name;                ///< As the file says.
+  std::string name;                    ///< The same; of a pair out of several "RIG_LIDAR_CAMERA".
+  std::filesystem::path path;          ///< As it was given (RigPlace).
+  std::string sha256;                  ///< Of the file's bytes, lower-case hex.
+  std::string lidar_name = "lidar";    ///< As the file names it under lidars...
+  std::string camera_name = "camera";  ///< ...and cameras, if it does.
   std::string lcm_url = kDefaultLcmUrl;
   /// Of .lcm files that define the types of other teams' recordings; empty: ours and bot_core's.
   std::filesystem::path lcm_types;
@@ -159,11 +163,36 @@ struct Rig {
   CalibrationTask Task() const;
 };
 
+/// Where a rig is found: a file, and which of its sensors are meant. What follows the last # of a
+/// path that is no file names them: "rig.yaml#front,left".
+struct RigPlace {
+  std::filesystem::path file;
+  std::vector<std::string> names;
+};
+RigPlace PlaceOfRig(const std::filesystem::path& path);
+
+/// The sensors of a rig file by name, in its order.
+struct RigSensors {
+  std::vector<std::string> lidars;
+  std::vector<std::string> cameras;
+};
+
 /// Reads and checks a rig file (YAML). Options that are not given keep their defaults; board and
-/// camera must be given.
+/// camera must be given. Of a file with several lidars or cameras, `path` names one pair
+/// (RigPlace), which is read as if the file had no others.
 /// @throws std::runtime_error naming file, line, key, rule and value: missing or unknown keys,
-///     wrong types, Problems() of any part.
+///     wrong types, Problems() of any part; which pairs there are, if `path` names none.
 Rig LoadRig(const std::filesystem::path& path);
+
+/// A path for each pair of a rig file: each camera of the first lidar, of the second, ...; of those
+/// sensors alone that `path` names, if it names any of a kind. `path` itself if the file does not
+/// have them by name.
+/// @throws as LoadRig if the sensors' names are wrong.
+std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path);
+
+/// LoadRig of each of PairsOfRig.
+/// @throws as LoadRig, each problem once.
+std::vector<Rig> LoadPairs(const std::filesystem::path& path);
 
 /// What a rig file says of a lens that may still have to be found.
 struct LensInRig {

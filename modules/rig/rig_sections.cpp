@@ -2,65 +2,34 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
+#include <optional>
+#include <stdexcept>
 #include <variant>
 
 #include "core/camera/named_lens.hpp"
 #include "core/camera_detection/calibration_target.hpp"
 #include "files/transform_yaml.hpp"
 #include "rig/assessor_section.hpp"
+#include "rig/channel_section.hpp"
 #include "rig/driver_sections.hpp"
 #include "rig/lcm_url.hpp"
 #include "rig/pose_guide_section.hpp"
 #include "rig/section_reading.hpp"
+#include "rig/sensor_entries.hpp"
 
 namespace voqcal {
 namespace {
 
-void ReadLcm(YamlSection* top, Rig* rig, std::string* channel_prefix) {
+void ReadLcm(YamlSection* top,
+             const std::filesystem::path& rig_path,
+             Rig* rig,
+             std::string* channel_prefix) {
   YamlSection section = top->Section("lcm");
   section.Read("url", &rig->lcm_url);
   const std::string problem = LcmUrlProblem(rig->lcm_url);
   if (!problem.empty()) section.AddError("url", problem);
   section.Read("channel_prefix", channel_prefix);
-  ReadPath("types", rig->path, &section, &rig->lcm_types);
-  section.RefuseUnknownKeys();
-}
-
-void ReadChannels(YamlSection* top, const std::string& prefix, Channels* channels) {
-  constexpr std::size_t kMaxLength = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH of LCM 1.3
-  YamlSection section = top->Section("channels");
-  std::map<std::string, const char*> taken;  // channel: its key
-  const auto read = [&](const char* key, std::string* channel) {
-    section.Read(key, channel);
-    if (channel->empty()) section.AddError(key, "must not be empty");
-    *channel = prefix + *channel;
-    if (channel->size() > kMaxLength) {
-      section.AddError(key, "must have at most 63 letters, prefix included");
-    }
-    const auto [same, is_new] = taken.emplace(*channel, key);
-    if (!is_new) {  // the one that the file gives: the other may be a default
-      section.AddError(section.Has(key) ? key : same->second, "must differ from other channels");
-    }
-  };
-  read("lidar_points", &channels->lidar_points);
-  read("lidar_packets", &channels->lidar_packets);
-  read("camera_image", &channels->camera_image);
-  read("camera_info", &channels->camera_info);
-  read("lidar_board", &channels->lidar_board);
-  read("camera_board", &channels->camera_board);
-  read("calib_command", &channels->calib_command);
-  read("calib_event", &channels->calib_event);
-  read("calib_samples", &channels->calib_samples);
-  read("voq_sets", &channels->voq_sets);
-  read("extrinsic_averaged", &channels->extrinsic_averaged);
-  read("extrinsic_refined", &channels->extrinsic_refined);
-  read("calib_assessment", &channels->calib_assessment);
-  read("next_pose", &channels->next_pose);
-  read("simulated_board", &channels->simulated_board);
-  read("module_status", &channels->module_status);
-  read("camera_to_lidar", &channels->camera_to_lidar);
-  read("extrinsic_check", &channels->extrinsic_check);
+  ReadPath("types", rig_path, &section, &rig->lcm_types);
   section.RefuseUnknownKeys();
 }
 
@@ -364,21 +333,124 @@ void ReadExtrinsicMonitor(YamlSection* top,
   CheckAndClose(options->window, &section);
 }
 
+/// Roughly where a sensor is on its rig: p_rig = T_rig_sensor * p_sensor.
+std::optional<Eigen::Isometry3d> ReadMount(SensorEntry* entry, const char* key) {
+  YamlSection section = entry->section.Section(key);
+  if (!entry->section.Has(key)) return {};
+  Eigen::Isometry3d T_rig_sensor = Eigen::Isometry3d::Identity();
+  ReadTransform(&section, &T_rig_sensor);
+  section.RefuseUnknownKeys();
+  return T_rig_sensor;
+}
+
+/// Where the two are on the rig tells where they are to each other.
+void ReadMounts(const PairOfEntries& pair, Rig* rig) {
+  const auto T_rig_lidar = ReadMount(pair.lidar, "T_rig_lidar_guess");
+  const auto T_rig_camera = ReadMount(pair.camera, "T_rig_camera_guess");
+  if (rig->T_camera_lidar_guess) {
+    YamlSection camera = pair.camera->section.Section("camera");
+    camera.AddError("T_camera_lidar_guess",
+                    "is of one lidar: give lidars." + pair.lidar->name +
+                        ".T_rig_lidar_guess and cameras." + pair.camera->name +
+                        ".T_rig_camera_guess instead");
+  }
+  if (T_rig_lidar && T_rig_camera)
+    rig->T_camera_lidar_guess = T_rig_camera->inverse() * *T_rig_lidar;
+}
+
+/// Where a detector's options are: the sensor's own, or else those that all of its kind share.
+YamlSection* HomeOf(const char* key, YamlSection* sensor, YamlSection* top) {
+  sensor->Section(key);  // both may have it
+  top->Section(key);
+  return sensor->Has(key) ? sensor : top;
+}
+
+/// A simulated world has one of each: two drivers that simulate two pairs would not show one board.
+void RefuseSimulator(const SensorEntries& entries, const Rig& rig, const PairOfEntries& pair) {
+  if (entries.lidars.size() + entries.cameras.size() <= 2) return;
+  const auto refuse = [](SensorEntry* entry, const char* driver) {
+    YamlSection section = entry->section.Section(driver);
+    section.AddError("source", "must not be the simulator, which has one lidar and one camera");
+  };
+  if (rig.lidar_driver.source == LidarDriverOptions::Source::kSimulator) {
+    refuse(pair.lidar, "lidar_driver");
+  }
+  if (rig.camera_driver.source == CameraDriverOptions::Source::kSimulator) {
+    refuse(pair.camera, "camera_driver");
+  }
+}
+
+/// What belongs to one lidar or one camera, from where each has its sections.
+void ReadSensors(const std::filesystem::path& rig_path,
+                 YamlSection* top,
+                 YamlSection* lidar,
+                 YamlSection* camera,
+                 Rig* rig,
+                 LensInRig* lens) {
+  ReadCamera(camera, &rig->camera, &rig->T_camera_lidar_guess, lens);
+  ReadLidarDriver(lidar, rig_path, &rig->lidar_driver, &rig->lidar_sensor);
+  ReadCameraDriver(camera, rig_path, &rig->camera_driver);
+  ReadLidarBoardDetector(HomeOf("lidar_board_detector", lidar, top), &rig->lidar_board_detector);
+  ReadCameraBoardDetector(HomeOf("camera_board_detector", camera, top),
+                          &rig->camera_board_detector);
+}
+
+/// Where the path names none, the file may: a session's copy is of one pair.
+RigPlace PlaceInFile(const RigPlace& place, YamlSection* top) {
+  std::string names;
+  top->Read("pair", &names);
+  return place.names.empty() && !names.empty()
+             ? PlaceOfRig(std::filesystem::path(place.file.string() + "#" + names))
+             : place;
+}
+
+/// The same of a file that has its sensors by name.
+void ReadNamedSensors(const RigPlace& place,
+                      const std::string& channel_prefix,
+                      YamlSection* top,
+                      SensorEntries* entries,
+                      Rig* rig,
+                      LensInRig* lens) {
+  const PairOfEntries pair = ChoosePair(PlaceInFile(place, top), lens != nullptr, entries);
+  rig->lidar_name = pair.lidar->name;
+  rig->camera_name = pair.camera->name;
+  const bool is_one_of_several = entries->lidars.size() + entries->cameras.size() > 2;
+  if (is_one_of_several) rig->name += "_" + rig->lidar_name + "_" + rig->camera_name;
+  ReadChannels(top, channel_prefix, pair, entries, &rig->channels);
+  ReadSensors(place.file, top, &pair.lidar->section, &pair.camera->section, rig, lens);
+  ReadMounts(pair, rig);
+  RefuseSimulator(*entries, *rig, pair);
+  pair.lidar->section.RefuseUnknownKeys();
+  pair.camera->section.RefuseUnknownKeys();
+}
+
 }  // namespace
 
-void ReadRigSections(YamlDocument* document, Rig* rig, LensInRig* lens) {
+RigSensors ReadRigSensors(const RigPlace& place, YamlDocument* document) {
   YamlSection top(document);
+  const SensorEntries entries = ReadSensorEntries(&top);
+  document->ThrowIfWrong();
+  RequireNames(place, entries.Names());
+  return entries.Names();
+}
+
+void ReadRigSections(const RigPlace& place, YamlDocument* document, Rig* rig, LensInRig* lens) {
+  YamlSection top(document);
+  SensorEntries entries = ReadSensorEntries(&top);
+  document->ThrowIfWrong();  // before any of them is chosen
   std::string channel_prefix;
-  top.ReadRequired("rig", &rig->name);
-  ReadLcm(&top, rig, &channel_prefix);
-  ReadChannels(&top, channel_prefix, &rig->channels);
+  top.ReadRequired("rig", &rig->rig_name);
+  rig->name = rig->rig_name;
+  ReadLcm(&top, place.file, rig, &channel_prefix);
   ReadBoard(&top, &rig->board);
-  ReadCamera(&top, &rig->camera, &rig->T_camera_lidar_guess, lens);
-  ReadLidarDriver(&top, rig->path, &rig->lidar_driver, &rig->lidar_sensor);
-  ReadCameraDriver(&top, rig->path, &rig->camera_driver);
+  if (entries.AreGiven()) {
+    ReadNamedSensors(place, channel_prefix, &top, &entries, rig, lens);
+  } else {
+    RequireNames(place, {});
+    ReadChannels(&top, channel_prefix, &rig->channels);
+    ReadSensors(place.file, &top, &top, &top, rig, lens);
+  }
   ReadSimulation(&top, &rig->simulation);
-  ReadLidarBoardDetector(&top, &rig->lidar_board_detector);
-  ReadCameraBoardDetector(&top, &rig->camera_board_detector);
   ReadSampleCollector(&top, &rig->sample_collector);
   ReadVoqSelector(&top, &rig->voq_selector, &rig->consistency);
   ReadExtrinsicEstimator(&top, &rig->extrinsic_estimator, &rig->average);
@@ -390,7 +462,7 @@ void ReadRigSections(YamlDocument* document, Rig* rig, LensInRig* lens) {
   ReadAssessor(&top, &rig->scene_check, &rig->diagnosis);
   ReadDashboard(&top, &rig->dashboard);
   ReadPoseGuide(&top, &rig->pose_guide);
-  ReadExtrinsicMonitor(&top, rig->path, &rig->extrinsic_monitor);
+  ReadExtrinsicMonitor(&top, place.file, &rig->extrinsic_monitor);
   rig->pose_guide.sensors.detector = rig->lidar_board_detector;
   top.RefuseUnknownKeys();
 }

@@ -6,8 +6,16 @@
 namespace voqcal {
 
 /// Fills everything of `rig` that its file says; what is wrong becomes an error of `document`.
-/// `rig->path` is given: folders are relative to it. With `lens`, the camera's numbers may be
-/// missing.
-void ReadRigSections(YamlDocument* document, Rig* rig, LensInRig* lens = nullptr);
+/// Folders are relative to the file of `place`. With `lens`, the camera's numbers may be missing.
+/// @throws std::runtime_error if `place` does not tell which sensors are meant.
+void ReadRigSections(const RigPlace& place,
+                     YamlDocument* document,
+                     Rig* rig,
+                     LensInRig* lens = nullptr);
+
+/// The sensors that the file names; none if it is of one lidar and one camera.
+/// @throws std::runtime_error naming file, line and key if those sections are wrong; if `place`
+///     names a sensor that is none of them.
+RigSensors ReadRigSensors(const RigPlace& place, YamlDocument* document);
 
 }  // namespace voqcal

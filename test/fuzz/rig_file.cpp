@@ -8,8 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   voqcal::fuzz::Tolerate([&text] {
     voqcal::YamlDocument document("rig.yaml", text);
     voqcal::Rig rig;
-    rig.path = "rig.yaml";
-    voqcal::ReadRigSections(&document, &rig);
+    voqcal::ReadRigSections({"rig.yaml", {}}, &document, &rig);
     document.ThrowIfWrong();
   });
   return 0;

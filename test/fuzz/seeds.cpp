@@ -198,10 +198,11 @@ void WriteAll(const fs::path& folder) {
   corpora.Write(
       "log_events", "damaged", events.substr(0, 20) + "damage" + events.substr(30) + events);
   WriteMessages(corpora);
-  for (const char* rig : {"simulated_vlp16", "acfr_vlp16"}) {
+  for (const char* rig : {"simulated_vlp16", "acfr_vlp16", "several_sensors"}) {
     const fs::path path =
         fs::path(VOQCAL_SOURCE_DIR) / "config/rigs" / (std::string(rig) + ".yaml");
-    corpora.Write("rig_file", rig, ReadWholeFile(path));
+    const bool has_names = std::string(rig) == "several_sensors";
+    corpora.Write("rig_file", rig, ReadWholeFile(path) + (has_names ? "\npair: front,left\n" : ""));
   }
   corpora.Write("poses_csv", "one_pose", Table());
   CalibrationResult result;

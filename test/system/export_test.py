@@ -136,8 +136,8 @@ def read_urdf(text):
     )
 
 
-def read_bot_frames(text):
-    """The bot_param grammar that is used: NAME { ... }, NAME = VALUE;, comments from # on."""
+def bot_frames_in(text):
+    """Root, and T_root_child of each child. The bot_param grammar that is used: NAME { ... }, NAME = VALUE;, comments from # on."""
     text = re.sub(r"#.*", "", text)
     tokens = re.findall(r"\[[^\]]*\]|\"[^\"]*\"|[^\s{};=]+|[{};=]", text)
 
@@ -155,12 +155,19 @@ def read_bot_frames(text):
 
     frames = block(0)[0]["coordinate_frames"]
     root = frames.pop("root_frame")
-    ((child, frame),) = frames.items()
-    assert frame["relative_to"] == root
-    w, x, y, z = frame["initial_transform"]["quat"]
-    T_root_child = transform(
-        rotation_of_quaternion(x, y, z, w), frame["initial_transform"]["translation"]
-    )
+    transforms = {}
+    for child, frame in frames.items():
+        assert frame["relative_to"] == root
+        w, x, y, z = frame["initial_transform"]["quat"]
+        transforms[child] = transform(
+            rotation_of_quaternion(x, y, z, w), frame["initial_transform"]["translation"]
+        )
+    return root, transforms
+
+
+def read_bot_frames(text):
+    root, transforms = bot_frames_in(text)
+    ((child, T_root_child),) = transforms.items()
     return np.linalg.inv(T_root_child), root, child
 
 
@@ -310,6 +317,74 @@ class ExportExtrinsic(unittest.TestCase):
         )
         self.assert_refused(
             self.run_export(result, "--format", "mrcal", "--rig", rig), "mrcal", "equidistant"
+        )
+
+    def rig_result(self):
+        """rig_extrinsics.yaml of two lidars and two cameras, and T_top_NAME of each but the top."""
+        sensors = {
+            "top": ("lidar", *EXTRINSICS["identity"]),
+            "side": ("lidar", *EXTRINSICS["half turn"]),
+            "left": ("camera", *EXTRINSICS["typical"]),
+            "right": ("camera", *EXTRINSICS["aligned"]),
+        }
+        text = "rig: a<b\nreference: top\nverdict: {grade: good}\nsensors:\n"
+        for name, (kind, q, t) in sensors.items():
+            q = [float(number) for number in q]
+            text += f"  {name}: {{kind: {kind}, T_reference_sensor: {{quaternion_xyzw: {q}, translation_m: {t}}}}}\n"
+        (self.folder / "rig_extrinsics.yaml").write_text(text)
+        return {
+            name: transform(rotation_of_quaternion(*q), t)
+            for name, (_, q, t) in sensors.items()
+            if name != "top"
+        }
+
+    def test_a_whole_rig_reads_back(self):
+        wanted = self.rig_result()
+
+        def assert_same(found):
+            self.assertEqual(set(found), set(wanted))
+            for name, T_top_child in found.items():
+                np.testing.assert_allclose(T_top_child, wanted[name], rtol=0, atol=1e-9)
+
+        def export(form):
+            done = self.run_export(self.folder, "--format", form)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return done.stdout
+
+        def tree_of(parts, read):
+            tree = {}
+            for part in parts:
+                T_child_top, parent, child = read(part)
+                self.assertEqual(parent, "top")
+                tree[child] = np.linalg.inv(T_child_top)
+            return tree
+
+        for form in ("ros", "ros1", "ros2"):
+            lines = [line for line in export(form).splitlines() if not line.startswith("#")]
+            assert_same(tree_of(lines, read_ros1 if form == "ros1" else read_ros2))
+        robot = xml.etree.ElementTree.fromstring(export("urdf"))
+        self.assertEqual((robot.tag, robot.get("name")), ("robot", "a_b"))
+        self.assertEqual({link.get("name") for link in robot.findall("link")}, {"top", *wanted})
+        joints = [xml.etree.ElementTree.tostring(joint) for joint in robot.findall("joint")]
+        assert_same(tree_of(joints, read_urdf))
+        self.assertIn("parent: top (a lidar); child: side (a lidar)", export("urdf"))
+        root, transforms = bot_frames_in(export("bot_frames"))
+        self.assertEqual(root, "top")
+        assert_same(transforms)
+        chain = yaml.safe_load(export("kalibr"))
+        T_left_top, T_right_top = (np.linalg.inv(wanted[name]) for name in ("left", "right"))
+        np.testing.assert_allclose(chain["cam0"]["T_cam_lidar"], T_left_top, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(chain["cam1"]["T_cam_lidar"], T_right_top, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(
+            chain["cam1"]["T_cn_cnm1"], T_right_top @ np.linalg.inv(T_left_top), rtol=0, atol=1e-9
+        )
+        self.assertNotIn("T_cn_cnm1", chain["cam0"])
+
+    def test_a_whole_rig_is_refused_in_one_line_where_a_format_holds_one_camera(self):
+        self.rig_result()
+        self.assert_refused(self.run_export(self.folder, "--format", "opencv"), "'opencv'", "urdf")
+        self.assert_refused(
+            self.run_export(self.folder, "--format", "ros", "--child", "x"), "--child", "rig"
         )
 
 

@@ -7,18 +7,15 @@
 #include <string>
 
 #include <spdlog/spdlog.h>
-#include <system_error>
 
-#include "calibrate/advice.hpp"
 #include "calibrate/bag.hpp"
 #include "calibrate/collect.hpp"
+#include "calibrate/finish_session.hpp"
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
-#include "core/selection/offset_sign.hpp"
 #include "files/atomic_file.hpp"
 #include "messaging/log.hpp"
-#include "report/no_result.hpp"
 #include "report/write_report.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_doubts.hpp"
@@ -39,40 +36,7 @@ std::string Given(const CalibrateArgs& args) {
   return args.bag.paths.empty() ? args.input.Given().string() : args.bag.paths.front();
 }
 
-// Moves the finished files to where they were asked for, the result last. A report that could not
-// be made must not leave an earlier one beside a new result.
-void Deliver(const std::filesystem::path& from, const std::filesystem::path& to) {
-  RequireNotBeingWritten(to / kSamplesLogName);
-  std::error_code error;
-  std::filesystem::create_directories(to, error);
-  if (!std::filesystem::exists(from / kReportName))
-    std::filesystem::remove(to / kReportName, error);
-  std::filesystem::remove(to / kNoResultName, error);
-  for (const char* name : {kReportName, kSamplesLogName, kResultJsonName, kResultName}) {
-    if (error || !std::filesystem::exists(from / name)) continue;
-    std::filesystem::rename(from / name, to / name, error);
-  }
-  if (error) throw std::runtime_error(to.string() + ": cannot write: " + error.message());
-}
-
-// Says so if a result is there that is not the one just asked for.
-std::string EarlierResultIn(const std::filesystem::path& folder) {
-  const std::filesystem::path result = folder / kResultName;
-  return std::filesystem::exists(result) ? "; " + result.string() + " is of an earlier run" : "";
-}
-
-/// Makes a page of what was seen, where there is no result. @return where it is, as a line.
-std::string SeenInstead(const Rig& rig,
-                        const OfflineRun& run,
-                        const std::string& problem,
-                        const std::filesystem::path& session,
-                        const std::filesystem::path& out) {
-  const std::string page_problem = WriteNoResult(rig, problem, run.samples(), session, out);
-  return page_problem.empty() ? "\nwhat was seen: " + (out / kNoResultName).string()
-                              : "\nno page of what was seen: " + page_problem;
-}
-
-void Print(const CalibrateArgs& args, const OfflineRun& run, bool has_report) {
+void Print(const CalibrateArgs& args, const OfflineRun& run) {
   if (args.is_json) {
     std::cout << ReadWholeFile(args.out / kResultJsonName);
     return;
@@ -80,15 +44,8 @@ void Print(const CalibrateArgs& args, const OfflineRun& run, bool has_report) {
   std::cout << Summary(*run.assessor().result()) << "frames\n  " << CountsOf(run) << "\nwritten\n  "
             << (args.out / kResultName).string() << "\n  " << (args.out / kSamplesLogName).string()
             << "\n  " << (args.out / kResultJsonName).string() << '\n';
-  if (has_report) std::cout << "  " << (args.out / kReportName).string() << '\n';
-}
-
-/// @throws DemandNotMet unless the verdict is as good as was demanded.
-void RequireVerdict(const Verdict& verdict, const std::string& demand) {
-  if (demand.empty()) return;
-  const Grade least = demand == "good" ? Grade::kGood : Grade::kLook;
-  if (verdict.grade <= least) return;
-  throw DemandNotMet("the result is not " + demand + ", as --require demands: " + verdict.headline);
+  if (std::filesystem::exists(args.out / kReportName))
+    std::cout << "  " << (args.out / kReportName).string() << '\n';
 }
 
 void RunCalibrate(const CalibrateArgs& args) {
@@ -107,20 +64,8 @@ void RunCalibrate(const CalibrateArgs& args) {
     input.times = RecordingTimes::kStamps;  // the import has settled them
   }
   const auto run = CollectSamples(rig, input, scratch.path());
-  run->Finish(/*is_collecting_only=*/false);
-  const std::string wrong_sign = WrongOffsetSign(run->samples(), rig.board);
-  if (!run->assessor().result()) {
-    const std::string why = Given(args) + ": no calibration: " + run->assessor().problem();
-    const std::string advice = FailureAdvice(*run) + (wrong_sign.empty() ? "" : "\n" + wrong_sign);
-    throw std::runtime_error(why + " (" + CountsOf(*run) + ")" + EarlierResultIn(args.out) +
-                             advice +
-                             SeenInstead(rig, *run, why + advice, scratch.path(), args.out));
-  }
-  const std::string report_problem = WriteReport(rig, *run, scratch.path());
-  Deliver(scratch.path(), args.out);
-  if (!wrong_sign.empty()) spdlog::warn("{}: {}", rig.path.string(), wrong_sign);
-  if (!report_problem.empty()) spdlog::warn("no {}: {}", kReportName, report_problem);
-  Print(args, *run, report_problem.empty());
+  FinishSession(rig, Given(args), {scratch.path(), args.out}, run.get());
+  Print(args, *run);
   RequireVerdict(VerdictOf(*run->assessor().result()), args.demand);
 }
 

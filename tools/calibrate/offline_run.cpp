@@ -5,6 +5,7 @@
 #include <exception>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -14,12 +15,25 @@
 #include "sample_collector/session_log.hpp"
 
 namespace voqcal {
+namespace {
 
-OfflineRun::OfflineRun(const Rig& rig, const std::filesystem::path& session_folder)
+/// None where the boards are known.
+template <typename Detector>
+std::optional<Detector> DetectorUnless(const DetectedBoards* boards, const Rig& rig, Bus* bus) {
+  if (boards != nullptr) return std::nullopt;
+  return std::optional<Detector>(std::in_place, rig, bus);
+}
+
+}  // namespace
+
+OfflineRun::OfflineRun(const Rig& rig,
+                       const std::filesystem::path& session_folder,
+                       const BoardsOfPair& boards)
     : channels_(rig.channels),
       bus_("memq://"),
-      lidar_detector_(rig, &bus_),
-      camera_detector_(rig, &bus_),
+      boards_(boards),
+      lidar_detector_(DetectorUnless<LidarBoardDetectorNode>(boards.lidar, rig, &bus_)),
+      camera_detector_(DetectorUnless<CameraBoardDetectorNode>(boards.camera, rig, &bus_)),
       collector_(rig, &bus_, session_folder),
       selector_(rig, &bus_),
       estimator_(rig, &bus_),
@@ -48,8 +62,7 @@ void OfflineRun::FeedLog(const std::filesystem::path& log,
     if (inputs.count(event->channel) == 0) continue;
     if (use_log_times && event->channel != channels_.calib_command) TakeLogTime(&*event);
     try {
-      bus_.PublishBytes(event->channel, event->bytes.data(), event->bytes.size());
-      HandleAll();
+      Feed(*event, reader.offset());
     } catch (const std::exception& error) {
       throw std::runtime_error(log.string() + ": event " + std::to_string(event->number) + " (" +
                                event->channel + "): " + error.what());
@@ -66,6 +79,22 @@ void OfflineRun::FeedLog(const std::filesystem::path& log,
                              (there.empty() ? "no events"
                                             : there + " (a lidar's packets and types of your own "
                                                       "are read by --bag)"));
+  }
+}
+
+void OfflineRun::Feed(const LogEvent& event, std::int64_t end_of_event) {
+  const auto publish = [this](const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+    bus_.PublishBytes(channel, bytes.data(), bytes.size());
+    HandleAll();
+  };
+  publish(event.channel, event.bytes);
+  if (boards_.lidar != nullptr && event.channel == channels_.lidar_points) {
+    for (const auto& bytes : boards_.lidar->Of(end_of_event)) publish(channels_.lidar_board, bytes);
+  }
+  if (boards_.camera != nullptr && event.channel == channels_.camera_image) {
+    for (const auto& bytes : boards_.camera->Of(end_of_event)) {
+      publish(channels_.camera_board, bytes);
+    }
   }
 }
 
@@ -128,8 +157,8 @@ std::string OfflineRun::Losses() const {
 }
 
 std::vector<const Module*> OfflineRun::modules() const {
-  return {&lidar_detector_,
-          &camera_detector_,
+  return {boards_.lidar != nullptr ? &boards_.lidar->detector() : &*lidar_detector_,
+          boards_.camera != nullptr ? &boards_.camera->detector() : &*camera_detector_,
           &collector_,
           &selector_,
           &estimator_,

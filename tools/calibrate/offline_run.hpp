@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "assessor/assessor_node.hpp"
+#include "calibrate/detected_boards.hpp"
 #include "calibrate/recording_clocks.hpp"
 #include "camera_board_detector/camera_board_detector_node.hpp"
 #include "extrinsic_estimator/extrinsic_estimator_node.hpp"
@@ -27,12 +28,21 @@ namespace voqcal {
 /// far.
 using OnProgress = std::function<void(double share, std::size_t num_samples)>;
 
+/// What the detectors of a lidar and a camera made of a recording; nothing: they run themselves.
+struct BoardsOfPair {
+  const DetectedBoards* lidar = nullptr;
+  const DetectedBoards* camera = nullptr;
+};
+
 /// The live system's modules on one in-process bus: the same input gives the same bytes as the live
 /// processes, faster.
 class OfflineRun {
  public:
   /// @param session_folder  where samples.lcm and extrinsic.yaml go.
-  OfflineRun(const Rig& rig, const std::filesystem::path& session_folder);
+  /// @param boards  what the detectors made of the recording already; borrowed.
+  OfflineRun(const Rig& rig,
+             const std::filesystem::path& session_folder,
+             const BoardsOfPair& boards = {});
 
   /// Feeds the sensor messages of a recording (sweeps, images, commands), event by event.
   /// An event that is cut off by the file's end is left out, with a warning. What `times` comes to
@@ -67,12 +77,14 @@ class OfflineRun {
  private:
   bool UsesLogTimes(const std::filesystem::path& log, RecordingTimes times) const;
   std::optional<LogEvent> NextBeforeCut(LogReader* reader);
+  void Feed(const LogEvent& event, std::int64_t end_of_event);
   void HandleAll();
 
   Channels channels_;
   Bus bus_;
-  LidarBoardDetectorNode lidar_detector_;
-  CameraBoardDetectorNode camera_detector_;
+  BoardsOfPair boards_;
+  std::optional<LidarBoardDetectorNode> lidar_detector_;
+  std::optional<CameraBoardDetectorNode> camera_detector_;
   SampleCollectorNode collector_;
   VoqSelectorNode selector_;
   ExtrinsicEstimatorNode estimator_;

@@ -104,10 +104,22 @@ std::optional<LensModel> ModelToFind(const LensArgs& args, const LensInRig& lens
   return LensModelFromString(args.lens_model);  // nothing: automatic
 }
 
+// Of a file with several, lines would have to be put under the right name.
+void RequireOneCamera(const std::filesystem::path& rig) {
+  const std::filesystem::path pair = PairsOfRig(rig).front();
+  if (PlaceOfRig(pair).names.empty()) return;
+  throw std::runtime_error(rig.string() +
+                           ": has its cameras by name: leave out --write, and put the section that "
+                           "is printed under the camera's name yourself");
+}
+
 void CalibrateLensOf(const LensArgs& args) {
   LensInRig lens;
   const Rig rig = LoadRig(args.rig, &lens);
-  if (!args.written.path.empty()) args.written.Prepare();
+  if (!args.written.path.empty()) {
+    RequireOneCamera(args.rig);
+    args.written.Prepare();
+  }
   const SeenBoards seen = SeeBoards(rig, args);
   ViewChoiceOptions choice_options;
   choice_options.max_still_motion_px = rig.sample_collector.max_still_motion_px;

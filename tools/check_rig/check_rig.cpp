@@ -1,12 +1,16 @@
 // check_rig: reads a rig file as every module does, and says what is wrong with it or what it
 // means.
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "common/tool_main.hpp"
 #include "core/camera_detection/calibration_target.hpp"
+#include "core/format.hpp"
 #include "rig/frame_pairing.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_doubts.hpp"
@@ -40,8 +44,17 @@ std::string CameraSourceOf(const Rig& rig) {
   return "unknown";
 }
 
-void PrintRig(const Rig& rig) {
-  std::printf("rig        %s\n", rig.name.c_str());
+std::string LensOf(const CameraModel& camera) {
+  return Format("%s, %d x %d px, fx %.1f fy %.1f px",
+                ToString(camera.lens).c_str(),
+                camera.width_px,
+                camera.height_px,
+                camera.fx_px,
+                camera.fy_px);
+}
+
+void PrintShared(const std::string& name, const Rig& rig) {
+  std::printf("rig        %s\n", name.c_str());
   std::printf("lcm_url    %s\n", rig.lcm_url.c_str());
   std::printf("board      %.3f x %.3f m, %s of %d x %d corners, %s %.4g\n",
               rig.board.width_m,
@@ -51,12 +64,11 @@ void PrintRig(const Rig& rig) {
               rig.board.num_corners_y,
               SideKeyOf(rig.board).c_str(),
               rig.board.square_m);
-  std::printf("camera     %s, %d x %d px, fx %.1f fy %.1f px\n",
-              ToString(rig.camera.lens).c_str(),
-              rig.camera.width_px,
-              rig.camera.height_px,
-              rig.camera.fx_px,
-              rig.camera.fy_px);
+}
+
+void PrintRig(const Rig& rig) {
+  PrintShared(rig.name, rig);
+  std::printf("camera     %s\n", LensOf(rig.camera).c_str());
   std::printf(
       "reads      %s, %s\n", rig.channels.lidar_points.c_str(), rig.channels.camera_image.c_str());
   std::printf("drivers    lidar: %s, camera: %s\n",
@@ -64,24 +76,70 @@ void PrintRig(const Rig& rig) {
               CameraSourceOf(rig).c_str());
 }
 
+/// A file's sensors, each once, and the names of its pairs.
+void PrintPairs(const std::vector<Rig>& pairs) {
+  PrintShared(pairs.front().rig_name, pairs.front());
+  std::set<std::string> told;
+  for (const Rig& rig : pairs) {
+    if (!told.insert(rig.lidar_name).second) continue;
+    std::printf("lidar      %s: reads %s, driver: %s\n",
+                rig.lidar_name.c_str(),
+                rig.channels.lidar_points.c_str(),
+                LidarSourceOf(rig).c_str());
+  }
+  for (const Rig& rig : pairs) {
+    if (!told.insert(rig.camera_name).second) continue;
+    std::printf("camera     %s: %s, reads %s, driver: %s\n",
+                rig.camera_name.c_str(),
+                LensOf(rig.camera).c_str(),
+                rig.channels.camera_image.c_str(),
+                CameraSourceOf(rig).c_str());
+  }
+  for (const Rig& rig : pairs) std::printf("pair       %s\n", rig.path.c_str());
+}
+
+std::vector<std::string> DoubtsOf(const std::vector<Rig>& pairs) {
+  std::vector<std::string> lines;
+  for (const Rig& rig : pairs) {
+    for (const std::string& doubt : RigDoubts(rig)) {
+      const std::string line = rig.path.string() + ": " + doubt;
+      if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+    }
+  }
+  return lines;
+}
+
 /// @throws DemandNotMet with a line for each thing that is hardly meant so.
-void JudgeRig(const Rig& rig) {
+void JudgeRigs(const std::filesystem::path& path, const std::vector<Rig>& pairs) {
   std::string text;
-  for (const std::string& doubt : RigDoubts(rig)) text += '\n' + rig.path.string() + ": " + doubt;
-  if (!text.empty())
-    throw DemandNotMet(rig.path.string() + ": can be read, but hardly be right:" + text);
-  const std::string pairing = PairingOfDrivers(rig);
-  if (!pairing.empty()) std::printf("frames     %s\n", pairing.c_str());
-  std::printf("%s: is usable\n", rig.path.c_str());
+  for (const std::string& line : DoubtsOf(pairs)) text += '\n' + line;
+  if (!text.empty()) {
+    throw DemandNotMet(path.string() + ": can be read, but hardly be right:" + text);
+  }
+  for (const Rig& rig : pairs) {
+    const std::string pairing = PairingOfDrivers(rig);
+    if (pairing.empty()) continue;
+    const std::string whose = rig.lidar_name + ", " + rig.camera_name + ": ";
+    std::printf("frames     %s%s\n", pairs.size() > 1 ? whose.c_str() : "", pairing.c_str());
+  }
+  std::printf("%s: is usable\n", path.c_str());
 }
 
 // What calibrate reads of a recording, which also holds what the live modules made of it.
-void PrintInputChannels(const Channels& channels) {
-  std::printf("(%s|%s|%s|%s)\n",
-              channels.lidar_points.c_str(),
-              channels.camera_image.c_str(),
-              channels.camera_info.c_str(),
-              channels.calib_command.c_str());
+void PrintInputChannels(const std::vector<Rig>& pairs) {
+  std::vector<std::string> names;
+  for (const Rig& rig : pairs) {
+    const Channels& channels = rig.channels;
+    for (const std::string& name : {channels.lidar_points,
+                                    channels.camera_image,
+                                    channels.camera_info,
+                                    channels.calib_command}) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : "|") + name;
+  std::printf("(%s)\n", text.c_str());
 }
 
 }  // namespace
@@ -107,17 +165,23 @@ int main(int argc, char** argv) {
       is_channels_only,
       "Print just the channels of sensors and operator, as a pattern for lcm-logplayer -e");
   return voqcal::RunTool(&app, argc, argv, [&] {
-    voqcal::LensInRig lens;
-    const voqcal::Rig rig = may_lack_lens ? voqcal::LoadRig(path, &lens) : voqcal::LoadRig(path);
-    if (is_name_only) {
-      std::puts(rig.name.c_str());
-    } else if (is_url_only) {
+    if (is_url_only) {  // which all pairs share
+      const std::filesystem::path pair = voqcal::PairsOfRig(path).front();
+      voqcal::LensInRig lens;
+      const voqcal::Rig rig = may_lack_lens ? voqcal::LoadRig(pair, &lens) : voqcal::LoadRig(pair);
       std::puts(rig.lcm_url.c_str());
+    } else if (is_name_only) {
+      std::puts(voqcal::LoadRig(path).name.c_str());
     } else if (is_channels_only) {
-      voqcal::PrintInputChannels(rig.channels);
+      voqcal::PrintInputChannels(voqcal::LoadPairs(path));
     } else {
-      voqcal::PrintRig(rig);
-      voqcal::JudgeRig(rig);
+      const std::vector<voqcal::Rig> pairs = voqcal::LoadPairs(path);
+      if (pairs.size() == 1) {
+        voqcal::PrintRig(pairs.front());
+      } else {
+        voqcal::PrintPairs(pairs);
+      }
+      voqcal::JudgeRigs(path, pairs);
     }
   });
 }

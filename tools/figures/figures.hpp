@@ -15,6 +15,7 @@ void AddGuidanceBound(CLI::App* app);
 void AddMethods(CLI::App* app);
 void AddMonitor(CLI::App* app);
 void AddRepeatability(CLI::App* app);
+void AddRig(CLI::App* app);
 void AddSubsets(CLI::App* app);
 void AddVerdict(CLI::App* app);
 void AddWrongModels(CLI::App* app);

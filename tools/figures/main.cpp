@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   voqcal::AddMethods(&app);
   voqcal::AddMonitor(&app);
   voqcal::AddRepeatability(&app);
+  voqcal::AddRig(&app);
   voqcal::AddSceneCheckPower(&app);
   voqcal::AddSubsets(&app);
   voqcal::AddVerdict(&app);

@@ -69,6 +69,19 @@ constexpr double kPriorChessboardTurnRad = 0.01;
 constexpr SharedErrors kPriorSharedErrors{
     0.03, 0.002, 0.001, kPriorChessboardTurnRad, kPriorChessboardTurnRad};
 
+/// What is known of the errors of a session's sightings before it speaks: those of a lidar and a
+/// camera, unless told otherwise.
+struct ErrorPriors {
+  SightingErrors sighting = kPriorErrors;
+  SharedErrors shared = kPriorSharedErrors;
+};
+
+/// Of two cameras: by order of magnitude what a lens model's errors do to a board. They have none
+/// of a lidar's shared errors.
+constexpr ErrorPriors kCameraErrorPriors{
+    {0.003, 0.001, 0.001, 0.005, 0.001},
+    {1e-6, 1e-6, 1e-6, kPriorChessboardTurnRad, kPriorChessboardTurnRad}};
+
 /// How one board's covariance grows with the square of each error, in the order of the struct.
 std::array<Matrix6d, kNumSightingErrors> UnitCovariances(const BoardPose& pose_camera,
                                                          const Eigen::Matrix3d& R_camera_lidar);

@@ -46,10 +46,11 @@ Eigen::Matrix<double, 6, kNumSharedErrors> BySharedErrors(const Eigen::Vector3d&
 
 // Gauss-Newton's equations about a fit, its priors included.
 struct MixedEquations {
-  MixedMatrix information = MixedPriorInformation();
+  MixedMatrix information;
   MixedVector pull = MixedVector::Zero();
 
-  explicit MixedEquations(const MixedFit& fit) {
+  explicit MixedEquations(const MixedFit& fit)
+      : information(MixedPriorInformation(fit.shared_prior)) {
     pull.tail<kNumSharedErrors>() =
         -information.bottomRightCorner<kNumSharedErrors, kNumSharedErrors>() * ToVector(fit.shared);
   }
@@ -168,22 +169,24 @@ MixedDifference DifferenceOf(const BoardSample& sample,
   return difference;
 }
 
-MixedMatrix MixedPriorInformation() {
+MixedMatrix MixedPriorInformation(const SharedErrors& prior) {
   MixedMatrix information = MixedMatrix::Zero();
   information.diagonal().tail<kNumSharedErrors>() =
-      ToVector(kPriorSharedErrors).cwiseAbs2().cwiseInverse();
+      ToVector(prior).cwiseAbs2().cwiseInverse();
   return information;
 }
 
 MixedFit FitWithErrors(const std::vector<const BoardSample*>& samples,
                        const CameraModel& camera,
-                       const Eigen::Isometry3d& T_camera_lidar_start) {
+                       const Eigen::Isometry3d& T_camera_lidar_start,
+                       const ErrorPriors& priors) {
   constexpr int kRounds = 2;  // the extrinsic hardly moves by its weights
   constexpr int kSteps = 60;  // to a percent
-  const SightingVariances prior = SquaresOf(kPriorErrors);
+  const SightingVariances prior = SquaresOf(priors.sighting);
   SightingVariances variances = prior;
   MixedFit fit;
   fit.T_camera_lidar = T_camera_lidar_start;
+  fit.shared_prior = priors.shared;
   for (int round = 0; round < kRounds; ++round) {
     fit.errors = RootsOf(variances);
     Minimise(samples, camera, &fit);

@@ -22,6 +22,7 @@ struct MixedFit {
   /// Takes lidar coordinates to camera coordinates: p_camera = T_camera_lidar * p_lidar.
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
   SharedErrors shared;
+  SharedErrors shared_prior = kPriorSharedErrors;  ///< 1 sigma of each before the data spoke.
   MixedMatrix covariance = MixedMatrix::Zero();
   SightingErrors errors;
   bool is_usable = false;  ///< False if the poses leave something open, or do not converge.
@@ -42,7 +43,7 @@ MixedDifference DifferenceOf(const BoardSample& sample,
                              const MixedFit& fit);
 
 /// What is known of MixedVector before any board was seen, as information.
-MixedMatrix MixedPriorInformation();
+MixedMatrix MixedPriorInformation(const SharedErrors& prior = kPriorSharedErrors);
 
 /// What the session's boards disagree by beyond their own covariances, as variance components: each
 /// sighting has random errors of five kinds (SightingErrors), of the same size in all sightings,
@@ -57,7 +58,8 @@ MixedMatrix MixedPriorInformation();
 /// @return a fit that is not usable where the poses leave the extrinsic open.
 MixedFit FitWithErrors(const std::vector<const BoardSample*>& samples,
                        const CameraModel& camera,
-                       const Eigen::Isometry3d& T_camera_lidar_start);
+                       const Eigen::Isometry3d& T_camera_lidar_start,
+                       const ErrorPriors& priors = {});
 
 /// The same for nearly the samples that `nearby` was fitted to (leave-one-out): the sightings'
 /// errors stay its.

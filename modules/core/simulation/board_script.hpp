@@ -23,6 +23,9 @@ class BoardScript {
               const CameraModel& camera,
               const Room& room);
 
+  /// @param stops  at least one.
+  BoardScript(const SimulationOptions& options, std::vector<BoardPlace> stops);
+
   double DurationS() const;
   Eigen::Isometry3d T_lidar_board(double time_s) const;  // NOLINT: named for its frames
   bool IsStill(double time_s) const;

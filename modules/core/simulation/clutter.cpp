@@ -5,6 +5,7 @@
 
 #include "core/simulation/board_prop.hpp"
 #include "core/simulation/keyed_noise.hpp"
+#include "core/simulation/room.hpp"
 
 namespace voqcal {
 namespace {
@@ -123,6 +124,15 @@ Props SecondBoard(const ClutterOptions& options,
 }
 
 }  // namespace
+
+Props ClutterOf(const SimulationOptions& options, const BoardSpec& board) {
+  ClutterOptions clutter;
+  if (!options.has_clutter) {
+    clutter.num_people = clutter.num_tripods = clutter.num_doors = clutter.num_furniture = 0;
+  }
+  clutter.second_board_scale = options.second_board_scale;
+  return DrawClutter(clutter, board, Room().Interior(), options.seed);
+}
 
 Props Person(const Eigen::Vector3d& feet_m, double azimuth_rad) {
   const Eigen::Vector3d left(-std::sin(azimuth_rad), std::cos(azimuth_rad), 0.0);

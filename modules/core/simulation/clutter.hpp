@@ -7,6 +7,7 @@
 
 #include "core/board/board_spec.hpp"
 #include "core/simulation/props.hpp"
+#include "core/simulation/simulation.hpp"
 
 namespace voqcal {
 
@@ -28,6 +29,9 @@ Props DrawClutter(const ClutterOptions& options,
                   const BoardSpec& board,
                   const Box& hall,
                   std::uint32_t seed);
+
+/// What a simulation's options ask for, in the hall that it is in.
+Props ClutterOf(const SimulationOptions& options, const BoardSpec& board);
 
 /// A person who stands there upright: legs, trunk, arms and head; `azimuth_rad` is where they look.
 Props Person(const Eigen::Vector3d& feet_m, double azimuth_rad);

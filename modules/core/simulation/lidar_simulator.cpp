@@ -26,6 +26,15 @@ ViewCone ConeAround(const std::vector<Eigen::Vector3d>& points_m,
   return {middle_m, radius_m + margin_m, margin_rad};
 }
 
+// The stand is upright in the room, whichever way the lidar is.
+std::array<Tube, 5> Seen(std::array<Tube, 5> tubes, const Eigen::Isometry3d& T_room_lidar) {
+  for (Tube& tube : tubes) {
+    tube.begin_m = T_room_lidar.inverse() * tube.begin_m;
+    tube.end_m = T_room_lidar.inverse() * tube.end_m;
+  }
+  return tubes;
+}
+
 std::vector<Eigen::Vector3d> EndsOf(const std::array<Tube, 5>& tubes) {
   std::vector<Eigen::Vector3d> ends;
   for (const Tube& tube : tubes) {
@@ -41,10 +50,11 @@ struct LidarSimulator::Moving {
   Moving(const Eigen::Isometry3d& T_lidar_board_in,
          const BoardSpec& board,
          double floor_z_m,
+         const Eigen::Isometry3d& T_room_lidar,
          double divergence_rad)
       : T_lidar_board(T_lidar_board_in),
         T_board_lidar(T_lidar_board.inverse()),
-        tubes(StandTubes(T_lidar_board, board, floor_z_m)),
+        tubes(Seen(StandTubes(T_room_lidar * T_lidar_board, board, floor_z_m), T_room_lidar)),
         board_cone(T_lidar_board.translation(),
                    std::hypot(board.width_m, board.height_m) / 2,
                    divergence_rad),
@@ -70,14 +80,17 @@ struct LidarSimulator::Hit {
 
 LidarSimulator::LidarSimulator(const SimulationOptions& options,
                                const BoardSpec& board,
-                               const Room& room)
+                               const Room& room,
+                               const Eigen::Isometry3d& T_room_lidar)
     : options_(options),
       board_(board),
       face_(board),
       room_(room),
+      T_room_lidar_(T_room_lidar),
       rays_(options.beam_divergence_rad) {
   for (const Bound& bound : room.Bounds()) {
-    solid_cones_.emplace_back(bound.centre_m, bound.radius_m, options.beam_divergence_rad);
+    solid_cones_.emplace_back(
+        T_room_lidar.inverse() * bound.centre_m, bound.radius_m, options.beam_divergence_rad);
   }
   const KeyedNoise noise(options.seed, NoiseUse::kRingBias);
   const double ring_bias_m = HasRings(options.scan.pattern) ? options.ring_bias_m : 0.0;
@@ -97,7 +110,8 @@ PointCloud LidarSimulator::Sweep(const Eigen::Isometry3d& T_lidar_board,
   const auto own_echoes = is_repeating ? std::vector<Echo>() : RoomEchoes(own_beams);
   const std::vector<ScanBeam>& beams = is_repeating ? beams_ : own_beams;
   const std::vector<Echo>& room_echoes = is_repeating ? room_echoes_ : own_echoes;
-  const Moving moving(T_lidar_board, board_, room_.FloorZM(), options_.beam_divergence_rad);
+  const Moving moving(
+      T_lidar_board, board_, room_.FloorZM(), T_room_lidar_, options_.beam_divergence_rad);
   const KeyedNoise range_noise(options_.seed, NoiseUse::kRange, frame_us);
   const KeyedNoise dropout_noise(options_.seed, NoiseUse::kDropout, frame_us);
   const KeyedNoise pointing_noise(options_.seed, NoiseUse::kPointing, frame_us);
@@ -135,7 +149,8 @@ BoardHits LidarSimulator::CountBoardHits(const Eigen::Isometry3d& T_lidar_board,
   const auto own_beams =
       is_repeating ? std::vector<ScanBeam>() : BeamsOfSweep(options_.scan, frame_us);
   const std::vector<ScanBeam>& beams = is_repeating ? beams_ : own_beams;
-  const Moving moving(T_lidar_board, board_, room_.FloorZM(), options_.beam_divergence_rad);
+  const Moving moving(
+      T_lidar_board, board_, room_.FloorZM(), T_room_lidar_, options_.beam_divergence_rad);
   const KeyedNoise dropout_noise(options_.seed, NoiseUse::kDropout, frame_us);
   const KeyedNoise pointing_noise(options_.seed, NoiseUse::kPointing, frame_us);
   std::set<int> emitters;
@@ -216,7 +231,7 @@ LidarSimulator::Hit LidarSimulator::Cast(const Eigen::Vector3d& direction,
                                          const Moving* moving,
                                          const std::vector<int>& solids) const {
   Hit hit;
-  hit.room = room_.Cast(Eigen::Vector3d::Zero(), direction, solids);
+  hit.room = room_.Cast(T_room_lidar_.translation(), T_room_lidar_.linear() * direction, solids);
   hit.range_m = hit.room.range_m;
   hit.surface = hit.room.surface;
   if (moving == nullptr) return hit;

@@ -22,13 +22,17 @@ struct BoardHits {
   int num_rings = 0;  ///< Zero if the sensor has no rings.
 };
 
-/// A lidar at the origin of the lidar frame.
+/// A lidar in the room.
 ///
 /// A beam is a cone. Where it meets surfaces of different depth it answers as real ones do: with
 /// the stronger echo if they are farther apart than it can blend, else with a range in between.
 class LidarSimulator {
  public:
-  LidarSimulator(const SimulationOptions& options, const BoardSpec& board, const Room& room);
+  /// @param T_room_lidar  where it stands, and how: any way up.
+  LidarSimulator(const SimulationOptions& options,
+                 const BoardSpec& board,
+                 const Room& room,
+                 const Eigen::Isometry3d& T_room_lidar = Eigen::Isometry3d::Identity());
 
   PointCloud Sweep(const Eigen::Isometry3d& T_lidar_board, std::int64_t frame_us) const;
 
@@ -66,6 +70,7 @@ class LidarSimulator {
   BoardSpec board_;
   BoardFace face_;
   Room room_;
+  Eigen::Isometry3d T_room_lidar_;
   BeamRays rays_;
   std::vector<ViewCone> solid_cones_;  ///< Where each of the room's solids can be met.
   std::vector<double> emitter_bias_m_;

@@ -33,15 +33,6 @@ const SimulationOptions& Checked(const SimulationOptions& options,
   return options;
 }
 
-Room RoomOf(const SimulationOptions& options, const BoardSpec& board) {
-  ClutterOptions clutter;
-  if (!options.has_clutter) {
-    clutter.num_people = clutter.num_tripods = clutter.num_doors = clutter.num_furniture = 0;
-  }
-  clutter.second_board_scale = options.second_board_scale;
-  return Room(DrawClutter(clutter, board, Room().Interior(), options.seed));
-}
-
 std::int64_t Microseconds(double time_s) { return std::llround(time_s * 1e6); }
 
 }  // namespace
@@ -92,7 +83,7 @@ std::vector<std::string> SimulationOptions::Problems() const {
 
 struct Simulation::Impl {
   Impl(const SimulationOptions& options, const BoardSpec& board, const CameraModel& camera)
-      : room(RoomOf(Checked(options, board, camera), board)),
+      : room(ClutterOf(Checked(options, board, camera), board)),
         checks(options, board, camera, room),
         script(options, board, camera, room),
         lidar(options, board, room),

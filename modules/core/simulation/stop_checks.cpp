@@ -17,29 +17,59 @@ constexpr double kImageMarginShare = 0.02;  // of the shorter side
 constexpr double kShellClearanceM = 0.2;
 constexpr int kNumPerEdge = 6;  // outline points that are checked
 
+bool IsFacing(const Eigen::Vector3d& sensor_m, const Eigen::Isometry3d& T_room_board) {
+  return AngleBetween(T_room_board.linear().col(2), sensor_m - T_room_board.translation()) <
+         kMaxObliqueRad;
+}
+
 }  // namespace
 
 StopChecks::StopChecks(const SimulationOptions& options,
                        const BoardSpec& board,
                        const CameraModel& camera,
-                       const Room& room)
+                       const Room& room,
+                       const Eigen::Isometry3d& T_room_lidar)
     : options_(options),
       board_(board),
       camera_(camera),
       room_(room),
-      T_lidar_camera_(options.T_camera_lidar.inverse()),
+      T_room_lidar_(T_room_lidar),
+      T_room_camera_(options.T_camera_lidar.inverse()),
       outline_board_m_(OutlinePointsBoardM(board, kNumPerEdge)) {}
 
-bool StopChecks::IsGood(const Eigen::Isometry3d& T_lidar_board) const {
+bool StopChecks::IsGood(const Eigen::Isometry3d& T_room_board) const {
+  const auto outline_m = OutlineOf(T_room_board);
+  const Eigen::Vector3d lidar_m = T_room_lidar_.translation();
+  const Eigen::Vector3d camera_m = T_room_camera_.translation();
+  return IsBetweenBeams(outline_m) && IsInImage(outline_m) && IsFacing(lidar_m, T_room_board) &&
+         IsFacing(camera_m, T_room_board) && HasRoom(T_room_board, outline_m) &&
+         IsUnhidden(lidar_m, outline_m) && IsUnhidden(camera_m, outline_m);
+}
+
+bool StopChecks::LidarSees(const Eigen::Isometry3d& T_room_board) const {
+  const auto outline_m = OutlineOf(T_room_board);
+  const Eigen::Vector3d lidar_m = T_room_lidar_.translation();
+  return IsBetweenBeams(outline_m) && IsFacing(lidar_m, T_room_board) &&
+         IsUnhidden(lidar_m, outline_m);
+}
+
+bool StopChecks::CameraSees(const Eigen::Isometry3d& T_room_board) const {
+  const auto outline_m = OutlineOf(T_room_board);
+  const Eigen::Vector3d camera_m = T_room_camera_.translation();
+  return IsInImage(outline_m) && IsFacing(camera_m, T_room_board) &&
+         IsUnhidden(camera_m, outline_m);
+}
+
+std::vector<Eigen::Vector3d> StopChecks::OutlineOf(const Eigen::Isometry3d& T_room_board) const {
   std::vector<Eigen::Vector3d> outline_m;
-  for (const auto& point : outline_board_m_) outline_m.push_back(T_lidar_board * point);
-  return IsBetweenBeams(outline_m) && IsInImage(outline_m) && IsFacing(T_lidar_board) &&
-         HasRoom(T_lidar_board, outline_m) && IsUnhidden(outline_m);
+  for (const auto& point : outline_board_m_) outline_m.push_back(T_room_board * point);
+  return outline_m;
 }
 
 bool StopChecks::IsBetweenBeams(const std::vector<Eigen::Vector3d>& outline_m) const {
-  return std::all_of(outline_m.begin(), outline_m.end(), [this](const Eigen::Vector3d& point) {
-    return IsInFieldOfView(options_.scan.pattern, point, kBeamMarginRad);
+  const Eigen::Isometry3d T_lidar_room = T_room_lidar_.inverse();
+  return std::all_of(outline_m.begin(), outline_m.end(), [&](const Eigen::Vector3d& point) {
+    return IsInFieldOfView(options_.scan.pattern, T_lidar_room * point, kBeamMarginRad);
   });
 }
 
@@ -54,18 +84,11 @@ bool StopChecks::IsInImage(const std::vector<Eigen::Vector3d>& outline_m) const 
   });
 }
 
-bool StopChecks::IsFacing(const Eigen::Isometry3d& T_lidar_board) const {
-  const Eigen::Vector3d normal = T_lidar_board.linear().col(2);
-  const Eigen::Vector3d centre_m = T_lidar_board.translation();
-  return AngleBetween(normal, -centre_m) < kMaxObliqueRad &&
-         AngleBetween(normal, T_lidar_camera_.translation() - centre_m) < kMaxObliqueRad;
-}
-
-bool StopChecks::HasRoom(const Eigen::Isometry3d& T_lidar_board,
+bool StopChecks::HasRoom(const Eigen::Isometry3d& T_room_board,
                          const std::vector<Eigen::Vector3d>& outline_m) const {
   const double half_diagonal_m = std::hypot(board_.width_m, board_.height_m) / 2;
-  if (room_.DistanceToFurnitureM(T_lidar_board.translation()) < half_diagonal_m) return false;
-  const auto tubes = StandTubes(T_lidar_board, board_, room_.FloorZM());
+  if (room_.DistanceToFurnitureM(T_room_board.translation()) < half_diagonal_m) return false;
+  const auto tubes = StandTubes(T_room_board, board_, room_.FloorZM());
   for (const Tube& tube : tubes) {
     Eigen::Vector3d end_m = tube.end_m;
     if (room_.DistanceToFurnitureM(end_m) < kShellClearanceM) return false;
@@ -77,15 +100,12 @@ bool StopChecks::HasRoom(const Eigen::Isometry3d& T_lidar_board,
   });
 }
 
-bool StopChecks::IsUnhidden(const std::vector<Eigen::Vector3d>& outline_m) const {
-  for (const Eigen::Vector3d& origin_m :
-       {Eigen::Vector3d(Eigen::Vector3d::Zero()), Eigen::Vector3d(T_lidar_camera_.translation())}) {
-    for (const auto& point : outline_m) {
-      const double range_m = (point - origin_m).norm();
-      if (room_.Cast(origin_m, (point - origin_m) / range_m).range_m < range_m) return false;
-    }
-  }
-  return true;
+bool StopChecks::IsUnhidden(const Eigen::Vector3d& origin_m,
+                            const std::vector<Eigen::Vector3d>& outline_m) const {
+  return std::all_of(outline_m.begin(), outline_m.end(), [&](const Eigen::Vector3d& point) {
+    const double range_m = (point - origin_m).norm();
+    return room_.Cast(origin_m, (point - origin_m) / range_m).range_m >= range_m;
+  });
 }
 
 }  // namespace voqcal

@@ -44,8 +44,7 @@ TEST(SimulatedRig, ListsEveryOptionWithItsTrueDefault) {
   const std::vector<std::string> lines = LinesOf(text);
   YamlDocument document(path.string(), text);
   Rig rig;
-  rig.path = path;
-  ReadRigSections(&document, &rig);
+  ReadRigSections({path, {}}, &document, &rig);
   document.ThrowIfWrong();
   EXPECT_GT(document.known_keys().size(), 60U);
   for (const YamlDocument::KnownKey& key : document.known_keys()) {
@@ -89,6 +88,14 @@ TEST(AcfrRig, IsTheRigOfTheRealSession) {
   EXPECT_EQ(rig.camera.distortion[3], -0.0515253);
   EXPECT_EQ(rig.board.height_m, 0.85);
   EXPECT_EQ(rig.sample_collector.num_still_frames, 1);
+}
+
+TEST(SeveralSensors, AreFourPairs) {
+  const std::vector<Rig> pairs = LoadPairs(kRigs / "several_sensors.yaml");
+  ASSERT_EQ(pairs.size(), 4U);
+  EXPECT_EQ(pairs[0].name, "truck_front_left");
+  EXPECT_EQ(pairs[3].channels.camera_image, "RIGHT_CAMERA");
+  EXPECT_EQ(pairs[3].lidar_board_detector.max_range_m, 20);
 }
 
 }  // namespace

@@ -180,7 +180,7 @@ TEST(LoadRig, RefusesUnknownAndRepeatedKeys) {
             "min_range_m?");
   EXPECT_EQ(LoadError(Minimal() + "chanels: {}\n"),
             "rig.yaml:5: chanels is not a known key: did you mean channels?");
-  EXPECT_EQ(LoadError(Minimal() + "lidar: {}\n"), "rig.yaml:5: lidar is not a known key");
+  EXPECT_EQ(LoadError(Minimal() + "sensor: {}\n"), "rig.yaml:5: sensor is not a known key");
   EXPECT_EQ(LoadError(Minimal() + "lidar_driver: {jpeg_quality: 9}\n"),
             "rig.yaml:5: lidar_driver.jpeg_quality is not a known key");
   EXPECT_EQ(LoadError(Minimal() + "voq_selector:\n  num_sets: 5\n  num_sets: 6\n"),

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "core/geometry/rigid.hpp"
+
+namespace voqcal {
+
+/// How two sensors of a rig stand to each other, as a calibration of the two says.
+struct SensorPair {
+  std::string from;
+  std::string to;
+  /// p_to = T_to_from * p_from, metres.
+  Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();
+  /// Of [rotation_rad; translation_m], perturbed on the left (side `to`).
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
+/// The same, seen from the other side.
+SensorPair Reversed(const SensorPair& pair);
+
+/// T_to_from of two sensors that stand in one reference frame, and how it moves with either:
+///     T_to_from = T_reference_to^-1 T_reference_from
+/// each perturbed on its own left.
+struct RelativePose {
+  RelativePose(const Eigen::Isometry3d& T_reference_from, const Eigen::Isometry3d& T_reference_to);
+
+  Eigen::Isometry3d T_to_from;
+  Matrix6d J_from;
+  Matrix6d J_to;
+};
+
+}  // namespace voqcal

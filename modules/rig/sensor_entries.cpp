@@ -1,0 +1,133 @@
+#include "rig/sensor_entries.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <stdexcept>
+
+#include "files/nearest_word.hpp"
+
+namespace voqcal {
+namespace {
+
+/// Names are part of channels, folders and frames.
+bool IsName(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_';
+  });
+}
+
+std::vector<SensorEntry> ReadKind(YamlSection* top,
+                                  const std::string& kind,
+                                  std::set<std::string>* taken) {
+  std::vector<SensorEntry> entries;
+  YamlSection section = top->Section(kind);
+  if (section.keys().empty()) top->AddError(kind, "must have a section for each, under its name");
+  for (const std::string& name : section.keys()) {
+    if (!IsName(name)) section.AddError(name, "must be named by letters, digits and _ alone");
+    if (!taken->insert(name).second) {
+      section.AddError(name, "must be named unlike every other sensor");
+    }
+    entries.push_back({name, section.Section(name)});
+  }
+  return entries;
+}
+
+std::vector<std::string> NamesOf(const std::vector<SensorEntry>& entries) {
+  std::vector<std::string> names;
+  for (const SensorEntry& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+std::string Joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? " " : ", ") + name;
+  return text;
+}
+
+SensorEntry* Find(const std::string& name, std::vector<SensorEntry>* entries) {
+  const auto found = std::find_if(entries->begin(),
+                                  entries->end(),
+                                  [&name](const SensorEntry& each) { return each.name == name; });
+  return found == entries->end() ? nullptr : &*found;
+}
+
+/// "lidars front, rear; cameras left".
+std::string ListOf(const RigSensors& sensors) {
+  return "lidars" + Joined(sensors.lidars) + "; cameras" + Joined(sensors.cameras);
+}
+
+void Take(const RigPlace& place, SensorEntry* entry, const std::string& kind, SensorEntry** slot) {
+  if (*slot != nullptr) {
+    throw std::runtime_error(place.file.string() + ": " + (*slot)->name + " and " + entry->name +
+                             " are both " + kind + ": a pair is a lidar and a camera");
+  }
+  *slot = entry;
+}
+
+}  // namespace
+
+RigSensors SensorEntries::Names() const { return {NamesOf(lidars), NamesOf(cameras)}; }
+
+SensorEntries ReadSensorEntries(YamlSection* top) {
+  SensorEntries entries;
+  if (!top->Has("lidars") && !top->Has("cameras")) {
+    top->Section("lidars");  // known keys
+    top->Section("cameras");
+    return entries;
+  }
+  std::set<std::string> taken;
+  entries.lidars = ReadKind(top, "lidars", &taken);
+  entries.cameras = ReadKind(top, "cameras", &taken);
+  const auto refuse = [top](const char* key, const std::string& kind) {
+    if (top->Has(key)) {
+      top->AddError(key,
+                    "must be in a sensor's own section, " + kind +
+                        ".NAME, beside lidars and "
+                        "cameras");
+      top->Section(key);
+    }
+  };
+  refuse("lidar_driver", "lidars");
+  refuse("camera_driver", "cameras");
+  refuse("camera", "cameras");
+  return entries;
+}
+
+void RequireNames(const RigPlace& place, const RigSensors& sensors) {
+  std::set<std::string> words(sensors.lidars.begin(), sensors.lidars.end());
+  words.insert(sensors.cameras.begin(), sensors.cameras.end());
+  for (const std::string& name : place.names) {
+    if (words.count(name) != 0) continue;
+    const std::string meant = NearestWord(name, words);
+    throw std::runtime_error(
+        place.file.string() + ": has no sensor '" + name + "'" +
+        (meant.empty() ? "" : " (did you mean " + meant + "?)") + "; it has " +
+        (words.empty() ? "one lidar and one camera, neither by name: leave out what follows #"
+                       : ListOf(sensors)));
+  }
+}
+
+PairOfEntries ChoosePair(const RigPlace& place, bool may_be_any_lidar, SensorEntries* entries) {
+  const RigSensors sensors = entries->Names();
+  RequireNames(place, sensors);
+  PairOfEntries pair;
+  for (const std::string& name : place.names) {
+    if (SensorEntry* lidar = Find(name, &entries->lidars)) {
+      Take(place, lidar, "lidars", &pair.lidar);
+    } else {
+      Take(place, Find(name, &entries->cameras), "cameras", &pair.camera);
+    }
+  }
+  const bool is_one_lidar = entries->lidars.size() == 1 || may_be_any_lidar;
+  if (pair.lidar == nullptr && is_one_lidar) pair.lidar = &entries->lidars[0];
+  if (pair.camera == nullptr && entries->cameras.size() == 1) pair.camera = &entries->cameras[0];
+  if (pair.lidar != nullptr && pair.camera != nullptr) return pair;
+  const std::string example =
+      place.file.string() + "#" + sensors.lidars[0] + "," + sensors.cameras[0];
+  throw std::runtime_error(place.file.string() + ": has " + ListOf(sensors) +
+                           ": name a pair of them, as in " + example +
+                           " (calibrate_rig and check_rig take them all)");
+}
+
+}  // namespace voqcal

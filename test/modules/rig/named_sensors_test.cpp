@@ -1,0 +1,260 @@
+// Rig files that have their sensors by name.
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rig/rig.hpp"
+#include "support/matchers.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr char kHead[] =  // 3 lines
+    "rig: truck\n"
+    "board: {width_m: 0.6, height_m: 0.8, square_m: 0.1, num_corners_x: 4, num_corners_y: 6}\n"
+    "\n";
+constexpr char kLens[] =
+    "{lens_model: plumb_bob, width_px: 640, height_px: 480, fx_px: 500, fy_px: 501, cx_px: 320, "
+    "cy_px: 240, distortion: [0.1, 0.2, 0, 0, 0.3]}";
+constexpr char kSmallLens[] =
+    "{lens_model: plumb_bob, width_px: 320, height_px: 240, fx_px: 250, fy_px: 251, cx_px: 160, "
+    "cy_px: 120, distortion: [0, 0, 0, 0, 0]}";
+
+// Lines 4 to 7, then 8 to 10.
+constexpr char kLidars[] =
+    "lidars:\n"
+    "  front:\n"
+    "    lidar_driver: {rate_hz: 20}\n"
+    "  rear: {lidar_board_detector: {max_range_m: 20}}\n";
+std::string Cameras() {
+  return std::string("cameras:\n") + "  left: {camera: " + kLens + "}\n" +
+         "  right: {camera: " + kSmallLens + ", channels: {camera_image: RIGHT}}\n";
+}
+std::string Truck() { return kHead + std::string(kLidars) + Cameras(); }
+
+/// What LoadRig says of the file, without its folder.
+std::string ErrorOf(const std::string& text, const std::string& place) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Write("rig.yaml", text);
+  std::string error = test::ErrorOf([&] { LoadRig(path + place); });
+  const std::string prefix = folder.path().string() + "/";
+  for (std::size_t at = 0; (at = error.find(prefix, at)) != std::string::npos;) {
+    error.erase(at, prefix.size());
+  }
+  return error;
+}
+
+Rig Load(const std::string& text, const std::string& place) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Write("rig.yaml", text);
+  return LoadRig(path + place);
+}
+
+TEST(NamedSensors, APairIsAnOrdinaryRig) {
+  const Rig rig = Load(Truck(), "#front,left");
+  EXPECT_EQ(rig.name, "truck_front_left");
+  EXPECT_EQ(rig.lidar_name, "front");
+  EXPECT_EQ(rig.camera_name, "left");
+  EXPECT_EQ(rig.lidar_driver.rate_hz, 20);
+  EXPECT_EQ(rig.camera.fx_px, 500);
+  EXPECT_EQ(rig.channels.lidar_points, "LIDAR_POINTS_front");
+  EXPECT_EQ(rig.channels.camera_image, "CAMERA_IMAGE_left");
+  EXPECT_EQ(rig.channels.camera_info, "CAMERA_INFO_left");
+  EXPECT_EQ(rig.channels.lidar_board, "LIDAR_BOARD_front");
+  EXPECT_EQ(rig.channels.calib_samples, "CALIB_SAMPLES_front_left");
+  EXPECT_EQ(rig.channels.calib_command, "CALIB_COMMAND");  // the operator's, of all
+}
+
+TEST(NamedSensors, TheOrderOfThePairsNamesIsFree) {
+  const Rig rig = Load(Truck(), "#right,rear");
+  EXPECT_EQ(rig.lidar_name, "rear");
+  EXPECT_EQ(rig.channels.camera_image, "RIGHT");
+  EXPECT_EQ(rig.channels.camera_board, "CAMERA_BOARD_right");
+}
+
+TEST(NamedSensors, OptionsOfADetectorAreTheSensorsOwnOrElseShared) {
+  const std::string text = Truck() + "lidar_board_detector: {max_range_m: 7}\n";
+  EXPECT_EQ(Load(text, "#front,left").lidar_board_detector.max_range_m, 7);
+  EXPECT_EQ(Load(text, "#rear,left").lidar_board_detector.max_range_m, 20);
+}
+
+TEST(NamedSensors, PrefixAndSharedNamesComeBeforeTheSensorsName) {
+  const std::string text =
+      Truck() + "lcm: {channel_prefix: A_}\nchannels: {lidar_points: SWEEPS, voq_sets: SETS}\n";
+  const Rig rig = Load(text, "#front,right");
+  EXPECT_EQ(rig.channels.lidar_points, "A_SWEEPS_front");
+  EXPECT_EQ(rig.channels.camera_image, "A_RIGHT");
+  EXPECT_EQ(rig.channels.voq_sets, "A_SETS_front_right");
+}
+
+TEST(NamedSensors, TheOnlyOnesNeedNoName) {
+  const std::string text =
+      std::string(kHead) + "lidars: {top: }\ncameras: {eye: {camera: " + kLens + "}}\n";
+  const Rig rig = Load(text, "");
+  EXPECT_EQ(rig.name, "truck");
+  EXPECT_EQ(rig.channels.lidar_points, "LIDAR_POINTS_top");
+  const std::string two_cameras = std::string(kHead) + "lidars: {top: }\n" + Cameras();
+  EXPECT_EQ(Load(two_cameras, "#right").lidar_name, "top");
+}
+
+TEST(NamedSensors, WhereTheyAreOnTheRigTellsWhereTheyAreToEachOther) {
+  const std::string text =
+      std::string(kHead) +
+      "lidars: {top: {T_rig_lidar_guess: {quaternion_xyzw: [0, 0, 0, 1], translation_m: [1, 0, "
+      "2]}}}"
+      "\ncameras: {eye: {T_rig_camera_guess: {quaternion_xyzw: [0, 0, 1, 0], translation_m: [0, 0, "
+      "1]}, camera: " +
+      kLens + "}}\n";
+  const auto guess = Load(text, "").T_camera_lidar_guess;
+  ASSERT_TRUE(guess);
+  // The camera is turned by half a turn about the rig's z.
+  EXPECT_TRUE(guess->translation().isApprox(Eigen::Vector3d(-1, 0, 1)));
+}
+
+TEST(NamedSensors, ALensMayStillHaveToBeFoundWhicheverLidarIsBesideIt) {
+  const test::TemporaryFolder folder;
+  const std::string path =
+      folder.Write("rig.yaml",
+                   std::string(kHead) + kLidars +
+                       "cameras: {left: {camera: {width_px: 640, height_px: 480}}}\n");
+  LensInRig lens;
+  const Rig rig = LoadRig(path, &lens);
+  EXPECT_FALSE(lens.camera);
+  EXPECT_EQ(rig.camera.width_px, 640);
+  EXPECT_EQ(rig.channels.camera_image, "CAMERA_IMAGE_left");
+}
+
+TEST(NamedSensors, EveryPairIsListedOrThoseOfTheSensorsThatAreNamed) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Write("rig.yaml", Truck());
+  const auto names = [&path](const std::string& place) {
+    std::vector<std::string> found;
+    for (const Rig& rig : LoadPairs(path + place)) found.push_back(rig.name);
+    return found;
+  };
+  EXPECT_THAT(
+      names(""),
+      ElementsAre("truck_front_left", "truck_front_right", "truck_rear_left", "truck_rear_right"));
+  EXPECT_THAT(names("#right"), ElementsAre("truck_front_right", "truck_rear_right"));
+  EXPECT_THAT(names("#front,rear,left"), ElementsAre("truck_front_left", "truck_rear_left"));
+  EXPECT_EQ(PairsOfRig(path)[3], path + "#rear,right");
+}
+
+TEST(NamedSensors, AFileOfOneOfEachHasOnePair) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Write("rig.yaml", std::string(kHead) + "camera: " + kLens + "\n");
+  const std::vector<Rig> rigs = LoadPairs(path);
+  ASSERT_EQ(rigs.size(), 1U);
+  EXPECT_EQ(rigs[0].name, "truck");
+  EXPECT_EQ(rigs[0].lidar_name, "lidar");
+  EXPECT_EQ(rigs[0].channels.lidar_points, "LIDAR_POINTS");
+}
+
+TEST(NamedSensors, AFileWhoseNameHasAHashIsThatFile) {
+  const test::TemporaryFolder folder;
+  const std::string path =
+      folder.Write("rig#1.yaml", std::string(kHead) + "camera: " + kLens + "\n");
+  EXPECT_EQ(LoadRig(path).name, "truck");
+  EXPECT_TRUE(PlaceOfRig(path).names.empty());
+}
+
+TEST(NamedSensors, OneOfSeveralPairsMustBeNamed) {
+  EXPECT_EQ(ErrorOf(Truck(), ""),
+            "rig.yaml: has lidars front, rear; cameras left, right: name a pair of them, as in "
+            "rig.yaml#front,left (calibrate_rig and check_rig take them all)");
+  EXPECT_THAT(ErrorOf(Truck(), "#rear"), HasSubstr("name a pair of them"));
+  EXPECT_EQ(ErrorOf(Truck(), "#front,rear"),
+            "rig.yaml: front and rear are both lidars: a pair is a lidar and a camera");
+}
+
+TEST(NamedSensors, TheFileItselfMayNameThePair) {
+  const std::string text = Truck() + "pair: rear,left\n";
+  EXPECT_EQ(Load(text, "").name, "truck_rear_left");
+  EXPECT_EQ(Load(text, "#front,right").name, "truck_front_right");
+  EXPECT_THAT(ErrorOf(Truck() + "pair: rear,lef\n", ""), HasSubstr("has no sensor 'lef'"));
+}
+
+TEST(NamedSensors, NamesOfNoneAreToldWithThoseThatThereAre) {
+  EXPECT_EQ(ErrorOf(Truck(), "#frnt,left"),
+            "rig.yaml: has no sensor 'frnt' (did you mean front?); it has lidars front, rear; "
+            "cameras left, right");
+  const std::string one = std::string(kHead) + "camera: " + kLens + "\n";
+  EXPECT_EQ(ErrorOf(one, "#front,left"),
+            "rig.yaml: has no sensor 'front'; it has one lidar and one camera, neither by name: "
+            "leave out what follows #");
+}
+
+TEST(NamedSensors, TwoSensorsOnOneChannelAreRefusedWhicheverPairIsRead) {
+  const std::string text = kHead + std::string(kLidars) + "cameras:\n  left: {camera: " + kLens +
+                           ", channels: {camera_image: EYE}}\n  right: {camera: " + kLens +
+                           ",\n    channels: {camera_image: EYE}}\n";
+  for (const char* pair : {"#front,left", "#rear,right"}) {
+    EXPECT_EQ(ErrorOf(text, pair),
+              "rig.yaml:11: cameras.right.channels.camera_image must differ from other channels, "
+              "is \"EYE\"");
+  }
+}
+
+TEST(NamedSensors, BothFormsAtOnceAreRefused) {
+  EXPECT_EQ(
+      ErrorOf(Truck() + "camera: " + kLens + "\nlidar_driver: {rate_hz: 5}\n", "#front,left"),
+      "rig.yaml:11: camera must be in a sensor's own section, cameras.NAME, beside lidars and "
+      "cameras, is a section\n"
+      "rig.yaml:12: lidar_driver must be in a sensor's own section, lidars.NAME, beside "
+      "lidars and cameras, is a section");
+}
+
+TEST(NamedSensors, BothKindsMustBeGivenByUniqueNames) {
+  EXPECT_EQ(ErrorOf(kHead + std::string(kLidars), ""),
+            "rig.yaml:1: cameras must have a section for each, under its name, is not given");
+  EXPECT_EQ(ErrorOf(kHead + std::string("lidars: {a b: , c: }\ncameras: {c: }\n"), ""),
+            "rig.yaml:4: lidars.a b must be named by letters, digits and _ alone, is empty\n"
+            "rig.yaml:5: cameras.c must be named unlike every other sensor, is empty");
+}
+
+TEST(NamedSensors, WhatASensorLacksIsToldAtItsEntry) {
+  const std::string no_size = kHead + std::string(kLidars) +
+                              "cameras:\n  left:\n    camera: {lens_model: plumb_bob, fx_px: 500, "
+                              "fy_px: 501,\n      cx_px: "
+                              "320, cy_px: 240, distortion: [0.1, 0.2, 0, 0, 0.3]}\n";
+  EXPECT_EQ(ErrorOf(no_size, "#front"),
+            "rig.yaml:10: cameras.left.camera.width_px is missing\n"
+            "rig.yaml:10: cameras.left.camera.height_px is missing");
+  EXPECT_THAT(
+      ErrorOf(kHead + std::string(kLidars) + "cameras: {left: {camra: " + kLens + "}}\n", "#front"),
+      HasSubstr("rig.yaml:8: cameras.left.camra is not a known key: did you mean camera?"));
+}
+
+TEST(NamedSensors, AGuessOfOnePairAndASimulatorOfOnePairAreRefused) {
+  const std::string guess =
+      ", T_camera_lidar_guess: {quaternion_xyzw: [0, 0, 0, 1], translation_m: [0, 0, 0]}}";
+  std::string text = Truck();
+  text.insert(text.find("}}\n  right"), guess.substr(0, guess.size() - 1));
+  EXPECT_THAT(ErrorOf(text, "#front,left"),
+              HasSubstr("cameras.left.camera.T_camera_lidar_guess is of one lidar: give "
+                        "lidars.front.T_rig_lidar_guess and cameras.left.T_rig_camera_guess"));
+  std::string simulated = Truck();
+  simulated.replace(simulated.find("rate_hz: 20"), 11, "source: simulator");
+  EXPECT_THAT(ErrorOf(simulated, "#front,left"),
+              HasSubstr("rig.yaml:6: lidars.front.lidar_driver.source must not be the simulator"));
+}
+
+TEST(NamedSensors, EachProblemOfAllPairsIsToldOnce) {
+  const test::TemporaryFolder folder;
+  std::string text = Truck();
+  text.replace(text.find("width_m: 0.6"), 12, "width_m: -1");
+  text.replace(text.find("max_range_m: 20"), 15, "max_range_m: x");
+  const std::string path = folder.Write("rig.yaml", text);
+  const std::string error = test::ErrorOf([&] { LoadPairs(path); });
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+  EXPECT_THAT(error, HasSubstr("rig.yaml:2: board: width_m"));
+  EXPECT_THAT(error, HasSubstr("rig.yaml:7: lidars.rear.lidar_board_detector.max_range_m"));
+}
+
+}  // namespace
+}  // namespace voqcal

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calibrate/recording_clocks.hpp"
+#include "result/rig_extrinsics.hpp"
+#include "rig/rig.hpp"
+
+namespace voqcal {
+
+/// Where the pairs' sessions are made, and where they go: each in a folder LIDAR_CAMERA of its own.
+struct RigFolders {
+  std::filesystem::path scratch;
+  std::filesystem::path out;
+};
+
+/// "front_left".
+std::string FolderOf(const Rig& pair);
+
+/// Does with each pair of a rig what calibrate does, but detects the boards of each sensor once for
+/// all its pairs. Each pair's session is that of calibrate, byte for byte. Behind them come the
+/// pairs of cameras whose sessions have at least three boards in common.
+///
+/// @throws std::runtime_error naming the log and the cause. That a pair gives no calibration is not
+///     thrown but told, and its `problem`.
+std::vector<CalibratedPair> CalibratePairs(const std::vector<Rig>& pairs,
+                                           const std::filesystem::path& log,
+                                           RecordingTimes times,
+                                           const RigFolders& folders);
+
+}  // namespace voqcal

@@ -1,0 +1,229 @@
+// calibrate_rig: every pair of a rig's lidars and cameras on one recording, joined to one tree.
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+#include "calibrate/finish_session.hpp"
+#include "calibrate_rig/calibrate_pairs.hpp"
+#include "common/scratch_folder.hpp"
+#include "common/tool_main.hpp"
+#include "files/atomic_file.hpp"
+#include "files/nearest_word.hpp"
+#include "messaging/log.hpp"
+#include "result/rig_extrinsics.hpp"
+#include "rig/rig.hpp"
+#include "rig/rig_doubts.hpp"
+
+namespace voqcal {
+namespace {
+
+struct CalibrateRigArgs {
+  std::filesystem::path rig;
+  std::filesystem::path log;
+  std::filesystem::path out;
+  std::string reference;  ///< Empty: the first lidar.
+  RecordingTimes times = RecordingTimes::kAuto;
+  std::string demand;  ///< "usable" or "good"; empty: none.
+};
+
+std::string Joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+void AddIfNew(const std::string& word, std::vector<std::string>* words) {
+  if (std::find(words->begin(), words->end(), word) == words->end()) words->push_back(word);
+}
+
+RigSensors SensorsOf(const std::vector<Rig>& pairs) {
+  RigSensors sensors;
+  for (const Rig& rig : pairs) {
+    AddIfNew(rig.lidar_name, &sensors.lidars);
+    AddIfNew(rig.camera_name, &sensors.cameras);
+  }
+  return sensors;
+}
+
+std::vector<std::string> NamesOf(const RigSensors& sensors) {
+  std::vector<std::string> names = sensors.lidars;
+  names.insert(names.end(), sensors.cameras.begin(), sensors.cameras.end());
+  return names;
+}
+
+void TellDoubts(const std::vector<Rig>& pairs) {
+  std::vector<std::string> doubts;
+  for (const Rig& rig : pairs) {
+    for (const std::string& doubt : BoardDoubts(rig.board)) AddIfNew(doubt, &doubts);
+    for (const std::string& doubt : CameraDoubts(rig.camera)) {
+      AddIfNew(rig.camera_name + ": " + doubt, &doubts);
+    }
+  }
+  for (const std::string& doubt : doubts) spdlog::warn("{}", doubt);
+}
+
+/// @throws std::runtime_error unless it is one of the sensors.
+std::string ReferenceOf(const CalibrateRigArgs& args, const RigSensors& sensors) {
+  if (args.reference.empty()) return sensors.lidars.front();
+  const std::vector<std::string> names = NamesOf(sensors);
+  const std::set<std::string> words(names.begin(), names.end());
+  if (words.count(args.reference) != 0) return args.reference;
+  const std::string meant = NearestWord(args.reference, words);
+  throw std::runtime_error(
+      "--reference must be a sensor of " + args.rig.string() + ", is '" + args.reference + "'" +
+      (meant.empty() ? "" : " (did you mean " + meant + "?)") + "; it has " + Joined(names));
+}
+
+/// The file and, of its sensors, those whose channel is there.
+std::string WithoutMissing(const CalibrateRigArgs& args,
+                           const RigSensors& sensors,
+                           const std::map<std::string, std::string>& missing) {
+  std::string text;
+  for (const std::string& name : NamesOf(sensors)) {
+    if (missing.count(name) == 0) text += (text.empty() ? "#" : ",") + name;
+  }
+  return PlaceOfRig(args.rig).file.string() + text;
+}
+
+/// A sensor that was not recorded is better told before an hour of work than after it.
+/// @throws std::runtime_error with a line for each.
+void RequireChannels(const CalibrateRigArgs& args, const std::vector<Rig>& pairs) {
+  std::map<std::string, std::string> missing;  // channel by sensor
+  for (const Rig& rig : pairs) {
+    missing[rig.lidar_name] = rig.channels.lidar_points;
+    missing[rig.camera_name] = rig.channels.camera_image;
+  }
+  std::set<std::string> there;
+  LogReader reader(args.log);
+  try {
+    while (!missing.empty()) {
+      const std::optional<LogEvent> event = reader.Next();
+      if (!event) break;
+      if (!there.insert(event->channel).second) continue;
+      for (auto each = missing.begin(); each != missing.end();) {
+        each = each->second == event->channel ? missing.erase(each) : std::next(each);
+      }
+    }
+  } catch (const TruncatedLogError&) {  // told by who collects the samples
+  }
+  if (missing.empty()) return;
+  const RigSensors sensors = SensorsOf(pairs);
+  const bool are_by_name = !PlaceOfRig(pairs.front().path).names.empty();
+  std::string text;
+  for (const auto& [sensor, channel] : missing) {
+    text += (text.empty() ? "" : "\n") + args.log.string() + ": has no channel " + channel + " (" +
+            sensor + ")";
+  }
+  text += "; it has " + Joined({there.begin(), there.end()});
+  if (are_by_name) {
+    text += ". Name each sensor's own channel under its `channels`, or leave sensors out: " +
+            WithoutMissing(args, sensors, missing);
+  }
+  throw std::runtime_error(text);
+}
+
+void RequireFolder(const CalibrateRigArgs& args, const std::vector<Rig>& pairs) {
+  if (std::filesystem::exists(args.out) && !std::filesystem::is_directory(args.out)) {
+    throw std::runtime_error(args.out.string() + ": is in the way: --out names a folder");
+  }
+  for (const Rig& rig : pairs) {  // a live session's, which must not be replaced
+    RequireNotBeingWritten(args.out / FolderOf(rig) / kSamplesLogName);
+  }
+}
+
+SensorNetwork Join(const RigExtrinsics& result, const std::string& reference) {
+  std::vector<SensorPair> joined;
+  for (const CalibratedPair& pair : result.pairs) {
+    if (pair.problem.empty()) joined.push_back(pair.extrinsic);
+  }
+  return JoinPairs(NamesOf({result.lidars, result.cameras}), reference, joined);
+}
+
+/// @throws std::runtime_error unless the rig is one piece.
+void RequireOnePiece(const CalibrateRigArgs& args, const RigExtrinsics& result) {
+  if (result.network.IsUsable()) return;
+  std::string text = args.log.string() + ": no calibration of the rig: " + result.network.problem;
+  for (const CalibratedPair& pair : result.pairs) {
+    if (!pair.problem.empty()) text += "\n" + pair.Name() + ": " + pair.problem;
+  }
+  const std::filesystem::path earlier = args.out / kRigResultName;
+  if (std::filesystem::exists(earlier)) text += "\n" + earlier.string() + " is of an earlier run";
+  throw std::runtime_error(text);
+}
+
+void CalibrateRig(const CalibrateRigArgs& args) {
+  const std::vector<Rig> pairs = LoadPairs(args.rig);
+  const RigSensors sensors = SensorsOf(pairs);
+  const std::string reference = ReferenceOf(args, sensors);
+  RequireFolder(args, pairs);
+  TellDoubts(pairs);
+  RequireChannels(args, pairs);
+  RigExtrinsics result;
+  {
+    const ScratchFolder scratch(args.out);
+    result.pairs = CalibratePairs(pairs, args.log, args.times, {scratch.path(), args.out});
+  }
+  result.rig = pairs.front().rig_name;
+  result.lidars = sensors.lidars;
+  result.cameras = sensors.cameras;
+  result.rig_sha256 = pairs.front().sha256;
+  result.version = VOQCAL_VERSION;
+  result.network = Join(result, reference);
+  RequireOnePiece(args, result);
+  WriteFileAtomically(args.out / kRigResultName, ToYaml(result));
+  std::cout << Summary(result) << "written\n  " << (args.out / kRigResultName).string() << '\n';
+  for (const Rig& rig : pairs) std::cout << "  " << (args.out / FolderOf(rig)).string() << "/\n";
+  RequireVerdict(VerdictOf(result), args.demand);
+}
+
+}  // namespace
+}  // namespace voqcal
+
+int main(int argc, char** argv) {
+  using voqcal::RecordingTimes;
+  CLI::App app(
+      "Calibrates every pair of a rig's lidars and cameras from one recording of all of them, and "
+      "joins them to one tree. Pairs that never see the board together are left out, as long as "
+      "others join the rig.\n"
+      "Exit status: 0 done; 1 and 2 errors, among them a rig that falls apart; 3 the result is not "
+      "what --require demands.",
+      "calibrate_rig");
+  voqcal::CalibrateRigArgs args;
+  app.add_option("rig",
+                 args.rig,
+                 "The rig file (YAML), with its sensors by name under lidars and cameras; "
+                 "FILE#front,left,right takes these alone")
+      ->required();
+  app.add_option("--log", args.log, "A recording (LCM log) of all sensors")->required();
+  app.add_option("--out",
+                 args.out,
+                 "Folder for rig_extrinsics.yaml and, in LIDAR_CAMERA/, what calibrate leaves of "
+                 "each pair; made if missing")
+      ->required();
+  app.add_option(
+      "--reference", args.reference, "The sensor in whose frame the others stand; the first lidar");
+  const std::map<std::string, RecordingTimes> times = {{"auto", RecordingTimes::kAuto},
+                                                       {"stamps", RecordingTimes::kStamps},
+                                                       {"log", RecordingTimes::kLog}};
+  app.add_option_function<std::string>(
+         "--times",
+         [&](const std::string& name) { args.times = times.at(name); },
+         "A message's time is its stamp, or when it was recorded (log); auto, unless told, takes "
+         "stamps unless those of a pair are of different clocks")
+      ->check(CLI::IsMember({"auto", "stamps", "log"}));
+  app.add_option("--require",
+                 args.demand,
+                 "End with exit status 3 unless the verdict is at least this: usable or good")
+      ->check(CLI::IsMember({"usable", "good"}));
+  return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::CalibrateRig(args); });
+}

@@ -64,6 +64,7 @@ DashboardNode::DashboardNode(const Rig& rig,
       report_file_{"text/html; charset=utf-8", "", false, true} {
   Subscribe();
   Show(Slot::kRig, RigJson(rig_));
+  Show(Slot::kEvents, EventsJson(events_));  // none yet: the first is news to a page that is open
 }
 
 void DashboardNode::Subscribe() {
@@ -260,8 +261,11 @@ void DashboardNode::ShowResult() {
   }
   OfferExports();
   Show(Slot::kResult,
-       ResultJson(
-           *refined_, *assessment_, IsMadeFrom(*samples_, *assessment_), working_on, NamesOf(exports_)));
+       ResultJson(*refined_,
+                  *assessment_,
+                  IsMadeFrom(*samples_, *assessment_),
+                  working_on,
+                  NamesOf(exports_)));
 }
 
 void DashboardNode::ShowNoResult(const std::string& problem) {
@@ -332,8 +336,8 @@ SessionReport DashboardNode::LookForReport() {
     // A report names the samples that it is of; of what was seen instead there is one only if it
     // was asked for.
     report_file_.bytes = ReadWholeFile(session_folder_ / name);
-    const bool is_of_these = has_result ? report_file_.bytes.find(sha256) != std::string::npos
-                                        : is_tried;
+    const bool is_of_these =
+        has_result ? report_file_.bytes.find(sha256) != std::string::npos : is_tried;
     if (is_of_these) {
       report_sha256_ = sha256;
       return {"made", name};

@@ -29,7 +29,8 @@ bool ReportMaker::Start() {
   posix_spawn_file_actions_addopen(
       &actions, STDOUT_FILENO, output_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
   posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  // The page's port and the LCM network are not the child's to keep, should it outlive this process.
+  // The page's port and the LCM network are not the child's to keep, should it outlive this
+  // process.
   posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
   const int error = posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);

@@ -81,8 +81,7 @@ class DashboardNodeTest : public test::ChainTest {
   }
   test::http::response<test::http::string_body> Get(const std::string& file) const {
     const std::string host = "127.0.0.1:" + std::to_string(server_.port());
-    return test::Request(
-        server_.port(), "/" + TestOptions().token + "/export/" + file, {host, ""});
+    return test::Request(server_.port(), "/" + TestOptions().token + "/export/" + file, {host, ""});
   }
 
   test::TemporaryFolder folder_;
@@ -191,8 +190,9 @@ TEST_F(DashboardNodeTest, SendsCommands) {
 }
 
 TEST_F(DashboardNodeTest, MakesAndOffersTheReportOnceFinishWasClicked) {
-  folder_.Write("make_report.sh",
-                "echo \"<p>of log's hash</p>\" > '" + (folder_.path() / "report.html").string() + "'");
+  folder_.Write(
+      "make_report.sh",
+      "echo \"<p>of log's hash</p>\" > '" + (folder_.path() / "report.html").string() + "'");
   SendSamples(test::NoisySamples(8), 8);
   Calibrate();
   EXPECT_EQ(ReportWhenDone()["state"], "");  // the samples are finished, by whoever did it

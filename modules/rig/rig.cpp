@@ -1,6 +1,7 @@
 #include "rig/rig.hpp"
 
 #include <arpa/inet.h>
+#include <spdlog/spdlog.h>
 
 #include "core/problems.hpp"
 #include "files/atomic_file.hpp"
@@ -67,6 +68,8 @@ Rig Load(const std::filesystem::path& path, LensInRig* lens) {
   rig.sha256 = Sha256OfBytes(text);
   ReadRigSections(&document, &rig, lens);
   document.ThrowIfWrong();
+  rig.remarks = document.Remarks();
+  for (const std::string& remark : rig.remarks) spdlog::warn(remark);
   return rig;
 }
 

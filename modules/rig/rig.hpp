@@ -127,7 +127,8 @@ struct ExtrinsicMonitorOptions {
 struct Rig {
   std::string name;
   std::filesystem::path path;
-  std::string sha256;  ///< Of the file's bytes, lower-case hex.
+  std::string sha256;                ///< Of the file's bytes, lower-case hex.
+  std::vector<std::string> remarks;  ///< What it says in vain; logged when it is loaded.
   std::string lcm_url = kDefaultLcmUrl;
   /// Of .lcm files that define the types of other teams' recordings; empty: ours and bot_core's.
   std::filesystem::path lcm_types;

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include <spdlog/spdlog.h>
+
 #include "common/tool_main.hpp"
 #include "core/camera_detection/calibration_target.hpp"
 #include "rig/frame_pairing.hpp"
@@ -107,6 +109,8 @@ int main(int argc, char** argv) {
       is_channels_only,
       "Print just the channels of sensors and operator, as a pattern for lcm-logplayer -e");
   return voqcal::RunTool(&app, argc, argv, [&] {
+    // Scripts ask for these one after the other: what there is to remark was said with the URL.
+    if (is_name_only || is_channels_only) spdlog::set_level(spdlog::level::err);
     voqcal::LensInRig lens;
     const voqcal::Rig rig = may_lack_lens ? voqcal::LoadRig(path, &lens) : voqcal::LoadRig(path);
     if (is_name_only) {

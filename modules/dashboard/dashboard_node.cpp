@@ -8,6 +8,7 @@
 
 #include "dashboard/exports.hpp"
 #include "dashboard/sensor_frames.hpp"
+#include "files/atomic_file.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/convert_result.hpp"
@@ -20,7 +21,10 @@ namespace {
 
 constexpr std::size_t kMaxEvents = 40;
 constexpr std::chrono::milliseconds kStepPeriod{50};  // a click must not seem to hang
-constexpr std::chrono::milliseconds kHealthPeriod{500};
+constexpr std::chrono::milliseconds kLookPeriod{500};
+// As the program "report" names them.
+constexpr char kReportPage[] = "report.html";
+constexpr char kNoResultPage[] = "no_result.html";
 // An image is shown with the board that was found in it, or without if that takes longer.
 constexpr std::chrono::milliseconds kBoardPatience{500};
 constexpr std::chrono::seconds kBoardsCome{2};
@@ -37,20 +41,30 @@ std::string Cause(const event_t& event) {
   return event.kind + " " + event.reason.substr(0, event.reason.find(':'));
 }
 
+std::vector<std::string> NamesOf(const std::map<std::string, StaticFile>& files) {
+  std::vector<std::string> names;
+  for (const auto& [name, file] : files) names.push_back(name);
+  return names;
+}
+
 }  // namespace
 
 DashboardNode::DashboardNode(const Rig& rig,
                              Bus* bus,
                              DashboardServer* server,
-                             const std::filesystem::path& session_folder)
+                             const std::filesystem::path& session_folder,
+                             const std::vector<std::string>& report_command)
     : rig_(rig),
       bus_(*bus),
       server_(*server),
       session_folder_(session_folder),
       result_file_(session_folder / "extrinsic.yaml"),
-      health_(rig.channels, {}, Clock::now()) {
+      health_(rig.channels, {}, Clock::now()),
+      report_maker_(report_command, session_folder / "report.txt"),
+      report_file_{"text/html; charset=utf-8", "", false, true} {
   Subscribe();
   Show(Slot::kRig, RigJson(rig_));
+  Show(Slot::kEvents, EventsJson(events_));  // none yet: the first is news to a page that is open
 }
 
 void DashboardNode::Subscribe() {
@@ -102,7 +116,7 @@ void DashboardNode::StepIfDue() {
 bool DashboardNode::Step() {
   next_step_ = Clock::now() + kStepPeriod;
   TakeCommands();
-  ShowHealthIfDue();
+  LookAtSessionIfDue();
   ShowImageIfItsBoardIsLate();
   if (!std::exchange(is_state_new_, false)) return false;
   Try([this] { ShowSamples(); });
@@ -115,16 +129,18 @@ std::optional<std::chrono::steady_clock::time_point> DashboardNode::NextStep() c
 }
 
 void DashboardNode::Republish() {
-  next_health_ = {};
+  next_look_ = {};
   Step();
 }
 
-void DashboardNode::ShowHealthIfDue() {
+void DashboardNode::LookAtSessionIfDue() {
   const Clock::time_point now = Clock::now();
-  if (now < next_health_) return;
-  next_health_ = now + kHealthPeriod;
+  if (now < next_look_) return;
+  next_look_ = now + kLookPeriod;
   health_.Take(ReadSession(session_folder_, std::time(nullptr)), now);
   Show(Slot::kModules, ModulesJson(health_, rig_.channels, now));
+  MakeReportIfWanted();
+  Try([this] { ShowReport(); });
 }
 
 void DashboardNode::OnImage(const image_t& message) {
@@ -216,6 +232,7 @@ void DashboardNode::SendCommand(const PageRequest& request) {
   message.command = request.command;
   message.sample_id = request.sample_id;
   bus_.Publish(rig_.channels.calib_command, message);
+  is_report_wanted_ = request.command == "finish";
   Count("commands: " + request.command);
 }
 
@@ -244,14 +261,17 @@ void DashboardNode::ShowResult() {
   }
   OfferExports();
   Show(Slot::kResult,
-       ResultJson(
-           *refined_, *assessment_, IsMadeFrom(*samples_, *assessment_), working_on, exports_));
+       ResultJson(*refined_,
+                  *assessment_,
+                  IsMadeFrom(*samples_, *assessment_),
+                  working_on,
+                  NamesOf(exports_)));
 }
 
 void DashboardNode::ShowNoResult(const std::string& problem) {
   exports_.clear();
   exports_sha256_.clear();
-  server_.Offer({});
+  OfferFiles();
   Show(Slot::kResult, NoResultJson(problem, ""));
 }
 
@@ -261,16 +281,69 @@ void DashboardNode::OfferExports() {
   if (exports_sha256_ == assessment_->samples_sha256) return;
   exports_.clear();
   exports_sha256_.clear();
-  std::map<std::string, StaticFile> exports;
   try {
-    exports = ExportsOf(result_file_, assessment_->samples_sha256, rig_.camera);
+    exports_ = ExportsOf(result_file_, assessment_->samples_sha256, rig_.camera);
     exports_sha256_ = assessment_->samples_sha256;
   } catch (const std::runtime_error& error) {
     spdlog::debug("nothing to export: {}", error.what());
     Count("looks for a result file that did not fit");
   }
-  for (const auto& [name, file] : exports) exports_.push_back(name);
-  server_.Offer(std::move(exports));
+  OfferFiles();
+}
+
+void DashboardNode::OfferFiles() {
+  std::map<std::string, StaticFile> files = exports_;
+  if (!report_.file.empty()) files[report_.file] = report_file_;
+  server_.Offer(std::move(files));
+}
+
+bool DashboardNode::IsFinishedAndJudged() const {
+  return samples_ && samples_->is_finished != 0 && assessment_ &&
+         IsMadeFrom(*samples_, *assessment_);
+}
+
+void DashboardNode::MakeReportIfWanted() {
+  if (!is_report_wanted_ || !IsFinishedAndJudged() || report_maker_.IsAtWork()) return;
+  is_report_wanted_ = false;
+  const std::string& sha256 = samples_->log_sha256;
+  if (report_sha256_ == sha256) return;
+  std::error_code ignored;  // there may be none
+  std::filesystem::remove(session_folder_ / kNoResultPage, ignored);
+  tried_sha256_ = sha256;
+  if (!report_maker_.Start()) spdlog::warn("the program that makes the report cannot be run");
+}
+
+void DashboardNode::ShowReport() {
+  const SessionReport report = LookForReport();
+  if (!(report == report_)) {
+    report_ = report;
+    OfferFiles();
+  }
+  Show(Slot::kReport, ReportJson(report_, session_folder_));
+}
+
+SessionReport DashboardNode::LookForReport() {
+  if (!IsFinishedAndJudged()) return {};
+  if (report_maker_.IsAtWork()) return {"making", ""};
+  const std::string& sha256 = samples_->log_sha256;
+  const bool has_result = assessment_->problem.empty();
+  const char* const name = has_result ? kReportPage : kNoResultPage;
+  if (report_sha256_ == sha256) return {"made", name};
+  report_sha256_.clear();
+  const bool is_tried = tried_sha256_ == sha256;
+  std::error_code ignored;
+  if (std::filesystem::exists(session_folder_ / name, ignored)) {
+    // A report names the samples that it is of; of what was seen instead there is one only if it
+    // was asked for.
+    report_file_.bytes = ReadWholeFile(session_folder_ / name);
+    const bool is_of_these =
+        has_result ? report_file_.bytes.find(sha256) != std::string::npos : is_tried;
+    if (is_of_these) {
+      report_sha256_ = sha256;
+      return {"made", name};
+    }
+  }
+  return {is_tried ? "failed" : "", ""};
 }
 
 // A candidate may be chosen of a sample that was discarded since: then the samples as they came.

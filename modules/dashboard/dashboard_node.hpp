@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dashboard/page_state.hpp"
+#include "dashboard/report_maker.hpp"
 #include "dashboard/sensor_frames.hpp"
 #include "dashboard/server.hpp"
 #include "health/rig_health.hpp"
@@ -29,10 +30,12 @@ class DashboardNode : public Module {
  public:
   /// @param bus, server  borrowed; must outlive the node.
   /// @param session_folder  where the assessor leaves extrinsic.yaml.
+  /// @param report_command  what makes the session's report there; run once "finish" was clicked.
   DashboardNode(const Rig& rig,
                 Bus* bus,
                 DashboardServer* server,
-                const std::filesystem::path& session_folder);
+                const std::filesystem::path& session_folder,
+                const std::vector<std::string>& report_command);
 
   std::string Name() const override { return "dashboard"; }
   std::string State() const override;
@@ -60,11 +63,17 @@ class DashboardNode : public Module {
   void SendCommand(const PageRequest& request);
 
   /// Faults are to be seen at once: more often than heartbeats come.
-  void ShowHealthIfDue();
+  void LookAtSessionIfDue();
   void ShowSamples();
   void ShowResult();
   void ShowNoResult(const std::string& problem);
   void OfferExports();
+  void OfferFiles();
+  bool IsFinishedAndJudged() const;
+  void MakeReportIfWanted();
+  /// The report of the finished samples, whoever made it.
+  void ShowReport();
+  SessionReport LookForReport();
   std::vector<BoardSample> TakenSamples() const;
   std::optional<Eigen::Isometry3d> Extrinsic() const;
   std::string WorkingOn() const;
@@ -84,7 +93,7 @@ class DashboardNode : public Module {
   Clock::time_point next_step_;
   Clock::time_point next_image_;
   Clock::time_point next_cloud_;
-  Clock::time_point next_health_;
+  Clock::time_point next_look_;
   RigHealth health_;
   std::deque<CountedEvent> events_;         ///< The newest first; rejects of one cause together.
   bool is_state_new_ = false;               ///< Samples or what is made of them changed.
@@ -99,8 +108,14 @@ class DashboardNode : public Module {
   std::optional<extrinsic_averaged_t> averaged_;
   std::optional<extrinsic_refined_t> refined_;
   std::optional<assessment_t> assessment_;
-  std::vector<std::string> exports_;  ///< Names of the files on offer...
-  std::string exports_sha256_;        ///< ...and of which samples they are.
+  std::map<std::string, StaticFile> exports_;  ///< The files on offer...
+  std::string exports_sha256_;                 ///< ...and of which samples they are.
+  ReportMaker report_maker_;
+  bool is_report_wanted_ = false;  ///< "finish" was clicked.
+  std::string tried_sha256_;       ///< Of which samples a report was begun last...
+  std::string report_sha256_;      ///< ...and of which there is one.
+  SessionReport report_;
+  StaticFile report_file_;
 };
 
 }  // namespace voqcal

@@ -22,6 +22,7 @@ constexpr std::chrono::seconds kAnswerTimeout{60};  // the page's script is larg
 constexpr std::uint32_t kMaxHeaderBytes = 8192;
 constexpr char kExports[] = "export/";
 constexpr int kMaxPages = 16;
+constexpr char kContentPolicy[] = "Content-Security-Policy";
 
 std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -32,8 +33,18 @@ HttpResponse Plain(http::status status, const std::string& line) {
   return response;
 }
 
+/// Nothing of another server is loaded.
+std::string ContentPolicy(const std::string& styles) {
+  return "default-src 'none'; script-src 'self'; style-src " + styles +
+         "; img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+         "frame-ancestors 'none'";
+}
+
 HttpResponse Give(const std::string& name, const StaticFile& file) {
   HttpResponse response(http::status::ok, 11);
+  if (file.has_styles_in_it) {
+    response.set(kContentPolicy, ContentPolicy("'unsafe-inline'"));
+  }
   response.set(http::field::content_type, file.content_type);
   if (file.is_download) {
     response.set(http::field::content_disposition, "attachment; filename=\"" + name + "\"");
@@ -87,8 +98,8 @@ HttpResponse AnswerUnsealed(const HttpRequest& request, const Hub& hub) {
 
 }  // namespace
 
-// The token is in the address: no cache keeps it, no link carries it on. Nothing of another server
-// is loaded, and no other page frames this one.
+// The token is in the address: no cache keeps it, no link carries it on. No other page frames this
+// one.
 HttpResponse Answer(const HttpRequest& request, const Hub& hub) {
   HttpResponse response = AnswerUnsealed(request, hub);
   response.set(http::field::cache_control, "no-store");
@@ -96,10 +107,9 @@ HttpResponse Answer(const HttpRequest& request, const Hub& hub) {
   response.set(http::field::x_frame_options, "DENY");
   response.set("X-Content-Type-Options", "nosniff");
   response.set("Cross-Origin-Resource-Policy", "same-origin");
-  response.set(
-      "Content-Security-Policy",
-      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
-      "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+  if (response.find(kContentPolicy) == response.end()) {
+    response.set(kContentPolicy, ContentPolicy("'self'"));
+  }
   response.keep_alive(false);
   response.prepare_payload();
   return response;

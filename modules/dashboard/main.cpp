@@ -60,6 +60,15 @@ std::vector<ip::address> ReachableAt(const ip::address& address) {
   return all;
 }
 
+/// What makes the session's report, by the rig that the session is of. (With tools/up that is a
+/// copy: what is changed in the rig file since counts for the next session.)
+std::vector<std::string> ReportCommand(const std::filesystem::path& session,
+                                       const std::filesystem::path& rig_path) {
+  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "report";
+  const std::filesystem::path own = session / "rig.yaml";
+  return {program, session, "--rig", std::filesystem::exists(own) ? own : rig_path};
+}
+
 /// A line each.
 std::string PageAddresses(const DashboardOptions& options,
                           const DashboardServer& server,
@@ -98,7 +107,7 @@ void Run(const ProcessArgs& args) {
   DashboardServer server(options);
   TellAddresses(PageAddresses(rig.dashboard, server, options.token), address_file);
   Bus bus(args.lcm_url.value_or(rig.lcm_url));
-  DashboardNode node(rig, &bus, &server, session);
+  DashboardNode node(rig, &bus, &server, session, ReportCommand(session, args.rig_path));
   if (!ip::make_address(options.address).is_loopback()) {
     spdlog::warn("the page can be reached over the network, without encryption: {}",
                  options.address);

@@ -201,6 +201,14 @@ std::string NoResultJson(const std::string& problem, const std::string& working_
   return Text(json);
 }
 
+std::string ReportJson(const SessionReport& report, const std::string& folder) {
+  Json json = Of(Slot::kReport);
+  json["state"] = report.state;
+  json["file"] = report.file;
+  json["folder"] = folder;
+  return Text(json);
+}
+
 // "beat" is new each second, so that a page knows that it is still told.
 std::string ModulesJson(const RigHealth& health, const Channels& channels, RigHealth::Time now) {
   Json json = Of(Slot::kModules);

@@ -46,6 +46,18 @@ std::string ResultJson(const extrinsic_refined_t& refined,
 /// That there is no estimate, and why.
 std::string NoResultJson(const std::string& problem, const std::string& working_on);
 
+/// What there is to read of the samples that "finish" left.
+struct SessionReport {
+  std::string state;  ///< "", "making", "made", "failed".
+  std::string
+      file;  ///< Its name, once made: "report.html", or "no_result.html" where there is none.
+  bool operator==(const SessionReport& other) const {
+    return state == other.state && file == other.file;
+  }
+};
+/// @param folder  where it is, and report.txt, which says why it is not.
+std::string ReportJson(const SessionReport& report, const std::string& folder);
+
 /// How each module is, what is wrong, and what comes of the four streams that samples are made of.
 std::string ModulesJson(const RigHealth& health, const Channels& channels, RigHealth::Time now);
 

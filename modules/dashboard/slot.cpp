@@ -10,6 +10,7 @@ const char* ToString(Slot slot) {
   constexpr std::array<const char*, kNumSlots> kNames = {"rig",
                                                          "samples",
                                                          "result",
+                                                         "report",
                                                          "guidance",
                                                          "events",
                                                          "modules",

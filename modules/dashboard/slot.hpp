@@ -11,6 +11,7 @@ enum class Slot : std::size_t {
   kRig,
   kSamples,
   kResult,
+  kReport,
   kGuidance,
   kEvents,
   kModules,
@@ -19,7 +20,7 @@ enum class Slot : std::size_t {
   kCloud,
   kImage,
 };
-inline constexpr std::size_t kNumSlots = 10;
+inline constexpr std::size_t kNumSlots = 11;
 
 /// "rig", "samples", ...: its name in every message.
 const char* ToString(Slot slot);

@@ -143,6 +143,12 @@ void YamlDocument::AddError(int line, const std::string& text) {
   errors_.emplace(line, name_ + ":" + std::to_string(line) + ": " + text);
 }
 
+std::vector<std::string> YamlDocument::Remarks() const {
+  std::vector<std::string> lines;
+  for (const auto& [line, text] : remarks_) lines.push_back(text);
+  return lines;
+}
+
 void YamlDocument::ThrowIfWrong() const {
   std::string lines;
   for (const auto& [line, text] : errors_) lines += (lines.empty() ? "" : "\n") + text;
@@ -295,6 +301,16 @@ void YamlSection::AddProblems(const std::vector<std::string>& problems) {
     const std::string key = problem.substr(0, problem.find(' '));
     document_->AddError(LineOf(key), (path_.empty() ? "" : path_ + ": ") + problem);
   }
+}
+
+void YamlSection::PassOver(const std::string& key, const std::string& instead) {
+  const auto entry = entries_.find(key);
+  if (entry == entries_.end()) return;
+  entry->second.is_read = true;
+  const int line = entry->second.line;
+  document_->remarks_.emplace(line,
+                              document_->name_ + ":" + std::to_string(line) + ": " + PathOf(key) +
+                                  " is no longer used, see " + PathOf(instead));
 }
 
 void YamlSection::RefuseUnknownKeys() {

@@ -28,6 +28,9 @@ class YamlDocument {
 
   void AddError(int line, const std::string& text);
 
+  /// What is to be told of the file although it can be read, in its order.
+  std::vector<std::string> Remarks() const;
+
   /// @throws std::runtime_error with one line for each error, in the order of the file.
   void ThrowIfWrong() const;
 
@@ -39,6 +42,7 @@ class YamlDocument {
   std::string name_;
   YAML::Node root_;
   std::multimap<int, std::string> errors_;  ///< By line.
+  std::multimap<int, std::string> remarks_;
   std::vector<KnownKey> known_keys_;
 };
 
@@ -79,6 +83,10 @@ class YamlSection {
     Read(key, value);
     is_required_ = false;
   }
+
+  /// A key that older files may have: it does nothing, which is a remark if it is given.
+  /// @param instead  the key of this section that does now what it was there for.
+  void PassOver(const std::string& key, const std::string& instead);
 
   /// True if every required key was given with a value of its type: checks of the whole make sense.
   bool IsComplete() const { return is_complete_; }

@@ -75,6 +75,11 @@ void RigHealth::Take(const SessionFacts& facts, Time now) {
   facts_ = facts;
 }
 
+void RigHealth::Expect(std::vector<std::string> modules) {
+  modules_ = std::move(modules);
+  are_streams_expected_ = true;
+}
+
 std::vector<Fault> RigHealth::Faults(Time now) const {
   std::vector<Fault> faults;
   AddDiskFault(&faults);
@@ -137,6 +142,11 @@ const ProgramFacts* RigHealth::ProgramOf(const std::string& name) const {
   return found == facts_.programs.end() ? nullptr : &found->second;
 }
 
+bool RigHealth::IsElsewhere(const std::string& module) const {
+  return are_streams_expected_ && !facts_.programs.empty() && ProgramOf(module) == nullptr &&
+         heartbeats_.Find(module) == nullptr;
+}
+
 bool RigHealth::IsExpected(const std::string& module) const {
   return ProgramOf(module) != nullptr || heartbeats_.Find(module) != nullptr ||
          std::find(modules_.begin(), modules_.end(), module) != modules_.end();
@@ -187,7 +197,8 @@ void RigHealth::AddStreamFaults(Time now, std::vector<Fault>* faults) const {
     if (flow == Flow::kFlows || flow == Flow::kEnded) continue;
     const bool is_sensor = i < 2;
     if (!is_sensor && FlowOf(streams[i - 2], now) != Flow::kFlows) continue;
-    const bool may_come = IsStarting(stream.sender, now) || !IsExpected(stream.sender);
+    const bool is_expected = IsExpected(stream.sender) || are_streams_expected_;
+    const bool may_come = IsStarting(stream.sender, now) || !is_expected;
     if (flow == Flow::kNothingYet && (may_come || !stream.has_reader)) continue;
     const std::string cause = CauseAt(stream.sender, now);
     const std::string who = is_sensor ? "The " + stream.name : stream.name;
@@ -199,9 +210,11 @@ void RigHealth::AddStreamFaults(Time now, std::vector<Fault>* faults) const {
     faults->push_back({stream.name,
                        what,
                        cause.empty() ? stream.sender + " runs, and gets nothing" : cause,
-                       is_sensor ? "Check the " + stream.name +
-                                       "'s power, cable and address in the rig file; " + file
-                                 : file});
+                       IsElsewhere(stream.sender)
+                           ? "Start it too (tools/up --only " + stream.sender + "), on its host."
+                       : is_sensor ? "Check the " + stream.name +
+                                         "'s power, cable and address in the rig file; " + file
+                                   : file});
   }
 }
 
@@ -231,6 +244,7 @@ std::string RigHealth::CauseAt(const std::string& module, Time now) const {
   if (program != nullptr && program->history.was_stopped) return module + " was stopped";
   const HeardModule* heard = heartbeats_.Find(module);
   if (heard == nullptr) {
+    if (IsElsewhere(module)) return module + " was not started here, and is not heard";
     return IsExpected(module) ? module + " was not heard" : module + " is not of this session";
   }
   const module_status_t& status = heard->status;

@@ -39,6 +39,10 @@ class RigHealth {
   void Take(const module_status_t& status, Time now) { heartbeats_.Take(status, now); }
   void Take(const SessionFacts& facts, Time now);
 
+  /// From now on these should be heard; and that comes which those that are heard read, wherever it
+  /// is sent.
+  void Expect(std::vector<std::string> modules);
+
   /// What is wrong, the gravest first; each cause once.
   std::vector<Fault> Faults(Time now) const;
 
@@ -53,6 +57,8 @@ class RigHealth {
  private:
   const Stream* StreamOfSender(const std::string& module) const;
   bool IsExpected(const std::string& module) const;
+  /// This host's session is without it; another's may have it.
+  bool IsElsewhere(const std::string& module) const;
   bool HasEndedWell(const std::string& module) const;
   const ProgramFacts* ProgramOf(const std::string& name) const;
 
@@ -76,6 +82,7 @@ class RigHealth {
 
   Heartbeats heartbeats_;
   std::vector<std::string> modules_;
+  bool are_streams_expected_ = false;  ///< Also those of senders that are not.
   Time begin_;
   SessionFacts facts_;
   Time last_recorded_{};  ///< When the recording was last seen to grow.

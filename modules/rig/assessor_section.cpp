@@ -1,24 +1,17 @@
 #include "rig/assessor_section.hpp"
 
-#include <initializer_list>
-
 #include "rig/section_reading.hpp"
 
 namespace voqcal {
 namespace {
 
-/// Keys that rig files of recorded sessions may still have.
-void IgnoreRetired(std::initializer_list<const char*> keys, YamlSection* section) {
-  double ignored = 0;
-  for (const char* key : keys) {
-    if (section->Has(key)) section->Read(key, &ignored);
-  }
-}
-
 void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
   YamlSection section = assessor->Section("scene_check");
-  // Of an earlier check.
-  IgnoreRetired({"min_contrast", "max_sigma_deg", "tolerance_deg", "min_gain_sigmas"}, &section);
+  // Of an earlier check, which knew turns alone.
+  section.PassOver("min_contrast", "min_gain_over_chance");
+  section.PassOver("min_gain_sigmas", "min_gain_over_chance");
+  section.PassOver("max_sigma_deg", "max_turn_sigma_deg");
+  section.PassOver("tolerance_deg", "turn_tolerance_deg");
   section.Read("min_edges", &options->refinement.min_edges);
   section.Read("min_gain_over_chance", &options->min_gain_over_chance);
   section.ReadDegrees("turn_prior_deg", &options->turn_prior_rad);
@@ -40,12 +33,13 @@ void ReadSceneCheck(YamlSection* assessor, SceneCheckOptions* options) {
 void ReadDiagnosis(YamlSection* assessor, DiagnosisOptions* options) {
   YamlSection section = assessor->Section("diagnosis");
   // What moves the result matters now, whatever its size.
-  IgnoreRetired({"min_held_out_gain",
-                 "min_focal_scale",
-                 "min_principal_point_px",
-                 "min_square_scale",
-                 "min_range_offset_m"},
-                &section);
+  for (const char* size : {"min_held_out_gain",
+                           "min_focal_scale",
+                           "min_principal_point_px",
+                           "min_square_scale",
+                           "min_range_offset_m"}) {
+    section.PassOver(size, "min_moved_intervals");
+  }
   section.Read("min_log_likelihood_gain", &options->min_log_likelihood_gain);
   section.Read("min_moved_intervals", &options->min_moved_intervals);
   section.Read("max_range_offset_m", &options->max_range_offset_m);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include <arpa/inet.h>
+#include <spdlog/spdlog.h>
 
 #include "core/problems.hpp"
 #include "files/atomic_file.hpp"
@@ -72,6 +73,8 @@ Rig Load(const std::filesystem::path& path, LensInRig* lens) {
   rig.sha256 = Sha256OfBytes(text);
   ReadRigSections(place, &document, &rig, lens);
   document.ThrowIfWrong();
+  rig.remarks = document.Remarks();
+  for (const std::string& remark : rig.remarks) spdlog::warn(remark);
   return rig;
 }
 

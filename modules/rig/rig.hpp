@@ -130,6 +130,7 @@ struct Rig {
   std::string name;                    ///< The same; of a pair out of several "RIG_LIDAR_CAMERA".
   std::filesystem::path path;          ///< As it was given (RigPlace).
   std::string sha256;                  ///< Of the file's bytes, lower-case hex.
+  std::vector<std::string> remarks;    ///< What it says in vain; logged when it is loaded.
   std::string lidar_name = "lidar";    ///< As the file names it under lidars...
   std::string camera_name = "camera";  ///< ...and cameras, if it does.
   std::string lcm_url = kDefaultLcmUrl;

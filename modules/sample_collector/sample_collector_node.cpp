@@ -50,8 +50,8 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
       bus_(*bus),
       session_folder_(session_folder),
       picker_(rig.board, rig.sample_collector),
-      sweeps_(kMaxBufferBytes),
-      images_(kMaxBufferBytes),
+      lidar_{FrameBuffer(kMaxBufferBytes)},
+      camera_{FrameBuffer(kMaxBufferBytes)},
       heartbeats_(rig.channels),
       second_look_(rig),
       next_look_(kFirstLook),
@@ -61,20 +61,18 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
   bus_.Subscribe<pointcloud2_t>(
       channels_.lidar_points, Queue::kEvery, [this](const pointcloud2_t& m) {
         clocks_.TakeLidar(m.utime);
-        Keep(m, &sweeps_);
+        Keep(m, &lidar_);
       });
   bus_.Subscribe<image_t>(channels_.camera_image, Queue::kEvery, [this](const image_t& m) {
     clocks_.TakeCamera(m.utime);
-    Keep(m, &images_);
+    Keep(m, &camera_);
   });
-  bus_.Subscribe<lidar_board_t>(
-      channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& m) {
-        OnBoard(m, &newest_lidar_utime_);
-      });
-  bus_.Subscribe<camera_board_t>(
-      channels_.camera_board, Queue::kEvery, [this](const camera_board_t& m) {
-        OnBoard(m, &newest_camera_utime_);
-      });
+  bus_.Subscribe<lidar_board_t>(channels_.lidar_board,
+                                Queue::kEvery,
+                                [this](const lidar_board_t& m) { OnBoard(m, &lidar_); });
+  bus_.Subscribe<camera_board_t>(channels_.camera_board,
+                                 Queue::kEvery,
+                                 [this](const camera_board_t& m) { OnBoard(m, &camera_); });
   bus_.Subscribe<module_status_t>(
       channels_.module_status, Queue::kEvery, [this](const module_status_t& m) {
         heartbeats_.Take(m, std::chrono::steady_clock::now());
@@ -102,11 +100,10 @@ bool SampleCollectorNode::Step() {
 }
 
 void SampleCollectorNode::Republish() {
-  // A stall of this process can pass for a silent second: only an empty queue shows that it was
-  // one.
-  const bool is_silent = !has_new_frames_ && was_idle_;
-  if (is_finish_requested_ && (is_silent || AreDetectorsPastFinish())) Finish();
-  has_new_frames_ = false;
+  if (is_finish_requested_ && IsAllJudged()) Finish();
+  for (Stream* stream : {&lidar_, &camera_}) {
+    stream->has_new_frames = stream->has_new_boards = false;
+  }
   was_idle_ = false;
   PublishSamples();
 }
@@ -123,7 +120,8 @@ void SampleCollectorNode::Accept(const BoardSample& sample,
 }
 
 void SampleCollectorNode::AcceptWithScene(const BoardSample& sample) {
-  const SampleScene scene = {sweeps_.Find(sample.utime), images_.Find(sample.camera_utime)};
+  const SampleScene scene = {lidar_.frames.Find(sample.utime),
+                             camera_.frames.Find(sample.camera_utime)};
   if (!scene.IsWhole()) Count("accepted without its scene");
   std::string remark = is_capture_requested_ ? kByCommand : "";
   if (!scene.IsWhole()) {
@@ -142,7 +140,7 @@ void SampleCollectorNode::Finish() {
 void SampleCollectorNode::RequestFinish() {
   if (is_finish_requested_) return;
   is_finish_requested_ = true;
-  finish_utime_ = std::max(sweeps_.NewestUtime(), images_.NewestUtime());
+  finish_utime_ = std::max(lidar_.frames.NewestUtime(), camera_.frames.NewestUtime());
 }
 
 bool SampleCollectorNode::IsNetworkShared() const {
@@ -159,8 +157,15 @@ void SampleCollectorNode::GoOn() {
   finish_utime_.reset();
 }
 
-bool SampleCollectorNode::AreDetectorsPastFinish() const {
-  return finish_utime_ && std::min(newest_lidar_utime_, newest_camera_utime_) > *finish_utime_;
+bool SampleCollectorNode::IsAllJudged() const {
+  const bool is_silent = !lidar_.has_new_boards && !camera_.has_new_boards && was_idle_;
+  return is_silent || (IsJudged(lidar_) && IsJudged(camera_));
+}
+
+// A stall of this process can pass for a silent second: only an empty queue shows that it was one.
+bool SampleCollectorNode::IsJudged(const Stream& stream) const {
+  const bool is_silent = !stream.has_new_frames && !stream.has_new_boards && was_idle_;
+  return is_silent || (finish_utime_ && stream.board_utime > *finish_utime_);
 }
 
 void SampleCollectorNode::LookAgain(bool is_resting) {
@@ -214,7 +219,7 @@ void SampleCollectorNode::NoteMiss(const lidar_board_t& message) {
   misses_.Note(kMissSweepChannel,
                kLidarMissChannel,
                message.miss,
-               sweeps_.Find(message.utime),
+               lidar_.frames.Find(message.utime),
                EncodeMessage(message));
 }
 
@@ -222,20 +227,21 @@ void SampleCollectorNode::NoteMiss(const camera_board_t& message) {
   misses_.Note(kMissImageChannel,
                kCameraMissChannel,
                message.miss,
-               images_.Find(message.utime),
+               camera_.frames.Find(message.utime),
                EncodeMessage(message));
 }
 
 template <typename Message>
-void SampleCollectorNode::Keep(const Message& message, FrameBuffer* frames) {
-  frames->Add({message.utime, EncodeMessage(message)});
+void SampleCollectorNode::Keep(const Message& message, Stream* stream) {
+  stream->has_new_frames = true;
+  stream->frames.Add({message.utime, EncodeMessage(message)});
 }
 
 // A message that contradicts itself is a frame without a board, and costs that frame only.
 template <typename BoardMessage>
-void SampleCollectorNode::OnBoard(const BoardMessage& message, std::int64_t* newest_utime) {
-  has_new_frames_ = true;
-  *newest_utime = message.utime;
+void SampleCollectorNode::OnBoard(const BoardMessage& message, Stream* stream) {
+  stream->has_new_boards = true;
+  stream->board_utime = message.utime;
   if (IsTooLate(message.utime)) return;
   if (IsNetworkShared()) return Count("frames while two sessions ran on one network");
   if (!message.miss.empty()) NoteMiss(message);
@@ -304,7 +310,7 @@ void SampleCollectorNode::Decide(const std::vector<PickerDecision>& decisions) {
   for (const PickerDecision& decision : decisions) {
     const std::string between = BetweenFrames(decision.reason);
     if (between.empty() && !IsOutOfOrder(decision.reason)) clocks_.NotePair();
-    if (decision.unsure && !second_look_.Keep(*decision.unsure, sweeps_, images_)) {
+    if (decision.unsure && !second_look_.Keep(*decision.unsure, lidar_.frames, camera_.frames)) {
       Count("no room for a second look");
     }
     if (decision.accepted) {

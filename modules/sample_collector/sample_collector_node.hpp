@@ -40,19 +40,27 @@ class SampleCollectorNode : public Module {
   void Accept(const BoardSample& sample) { Accept(sample, {}, ""); }
 
   /// No more frames will come: judges what waits, looks again where the lidar was unsure, and says
-  /// so in CALIB_SAMPLES. The command "finish"
-  /// does the same once no frame has come for a second, since detectors may still be at work. Where
-  /// sensors go on, it is done once both detectors are past the frames that had come before it, and
-  /// later frames give no sample until the command "capture" or "reset".
+  /// so in CALIB_SAMPLES. The command "finish" does the same once no frame has come for a second,
+  /// since detectors may still be at work. Where a sensor goes on, it is done once its detector is
+  /// past the frames that had come before it, and later frames give no sample until the command
+  /// "capture" or "reset".
   void Finish();
 
   const std::vector<BoardSample>& samples() const { return session_.samples(); }
 
  private:
+  /// What is heard of one sensor.
+  struct Stream {
+    FrameBuffer frames;
+    std::int64_t board_utime = std::numeric_limits<std::int64_t>::min();  ///< Newest, or a miss.
+    bool has_new_frames = false;                                          ///< Since Republish...
+    bool has_new_boards = false;                                          ///< ...was called last.
+  };
+
   template <typename Message>
-  static void Keep(const Message& message, FrameBuffer* frames);
+  static void Keep(const Message& message, Stream* stream);
   template <typename BoardMessage>
-  void OnBoard(const BoardMessage& message, std::int64_t* newest_utime);
+  void OnBoard(const BoardMessage& message, Stream* stream);
   /// Another session's detectors may say what this one's cannot be told from.
   bool IsNetworkShared() const;
   void NoteMiss(const lidar_board_t& message);
@@ -65,8 +73,10 @@ class SampleCollectorNode : public Module {
   /// A frame that came after "finish" was asked for.
   bool IsTooLate(std::int64_t utime) const;
   void GoOn();  ///< After "finish".
-  /// Both detectors are past what had come when "finish" was asked for.
-  bool AreDetectorsPastFinish() const;
+  /// Nothing of what had come when "finish" was asked for is still to be judged.
+  bool IsAllJudged() const;
+  /// Its detector is past that, or nothing comes of it any more.
+  bool IsJudged(const Stream& stream) const;
   void SayFinished();
   void Reset(std::int64_t utime);
   void CancelCapture();
@@ -91,8 +101,8 @@ class SampleCollectorNode : public Module {
   Bus& bus_;
   std::filesystem::path session_folder_;
   SamplePicker picker_;
-  FrameBuffer sweeps_;
-  FrameBuffer images_;
+  Stream lidar_;
+  Stream camera_;
   ClockWatch clocks_;
   Heartbeats heartbeats_;
   MissExamples misses_;
@@ -104,11 +114,8 @@ class SampleCollectorNode : public Module {
   bool is_capture_requested_ = false;  // by command: the next sample will be that
   bool is_finish_requested_ = false;
   std::optional<std::int64_t> finish_utime_;  // of the newest frame when that was; if one had come
-  std::int64_t newest_lidar_utime_ = std::numeric_limits<std::int64_t>::min();   // of a board...
-  std::int64_t newest_camera_utime_ = std::numeric_limits<std::int64_t>::min();  // ...or miss
   bool is_finished_ = false;
-  bool has_new_frames_ = false;  // since the last Republish
-  bool was_idle_ = false;        // since the last Republish: no message waited
+  bool was_idle_ = false;  // since the last Republish: no message waited
 };
 
 }  // namespace voqcal

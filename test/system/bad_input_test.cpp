@@ -99,6 +99,24 @@ class BadInput : public ::testing::Test {
   std::string rig_ = folder_.Write("rig.yaml", kRigText);
 };
 
+// Nobody reads here: what is played goes nowhere, at once.
+TEST_F(BadInput, ReplayLeavesOutWhatNoModuleCouldRead) {
+  {
+    LogWriter log(WriteLog(2));
+    log.Write({0, 0, "CAMERA_IMAGE", {1, 2, 3}});
+    log.Write({0, 0, "LIDAR_POINTS", EncodeMessage(image_t{})});
+    log.Write({0, 0, "LIDAR_POINTS", {}});
+  }
+  const test::Outcome outcome =
+      test::Run({test::Program("replay"), rig_, Path("raw.lcm"), "--lcm-url", "memq://"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              AllOf(StartsWith("4 messages played\n"),
+                    HasSubstr("1 CAMERA_IMAGE left out, which no module could read; the first: 3 "
+                              "bytes that are no image_t\n"),
+                    HasSubstr("2 LIDAR_POINTS left out, which no module could read; the first: ")));
+}
+
 TEST_F(BadInput, MissingFiles) {
   const std::string missing = Path("missing");
   ExpectCalibrateRefuses("--log", missing, HasSubstr(missing + ": no such file"));

@@ -93,6 +93,38 @@ TEST_F(CalibrateLens, WritesARigFileThatOthersTake) {
   EXPECT_THAT(Run(Path("board.lcm")).out, HasSubstr("rig file    its intrinsics (equidistant"));
 }
 
+// Folders are meant beside the rig file.
+TEST_F(CalibrateLens, WritesNoCopyWhosePathsWouldBeOthers) {
+  const std::string log = WriteLog(12, true);
+  rig_ =
+      folder_.Write("with_paths.yaml", std::string(kRigText) + "camera_driver: {folder: images}\n");
+  const test::Outcome outcome = Run(log, {"--write", Path("elsewhere/new.yaml")});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("camera_driver.folder of the rig file would be another path there"));
+  EXPECT_FALSE(std::filesystem::exists(Path("elsewhere")));
+  EXPECT_EQ(Run(log, {"--write", Path("beside.yaml")}).status, 0);
+}
+
+TEST_F(CalibrateLens, TakesARecordingOfRos) {
+  const std::string log = WriteLog(12, true);
+  const test::Outcome made =
+      test::Run({std::string(VOQCAL_SOURCE_DIR) + "/test/system/with_node.sh",
+                 "node",
+                 std::string(VOQCAL_SOURCE_DIR) + "/test/system/log_to_recording.mjs",
+                 log,
+                 Path("board.bag"),
+                 "mono8"});
+  if (made.status == 77) GTEST_SKIP() << made.out;
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto lens_of = [](const test::Outcome& outcome) {
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out.substr(outcome.out.find("for the rig file"));
+  };
+  EXPECT_EQ(lens_of(test::Run({test::Program("calibrate_lens"), rig_, "--bag", Path("board.bag")})),
+            lens_of(Run(log)));
+}
+
 TEST_F(CalibrateLens, SaysWhyALensShouldNotBeUsed) {
   const test::Outcome few = Run(WriteLog(5, true), {"--write", Path("new.yaml")});
   EXPECT_EQ(few.status, 3);

@@ -109,6 +109,30 @@ async function finish() {
   say(`verdict: ${await text("verdict")}`);
 }
 
+/** A page of its own, as it lies in the session's folder. */
+async function readTheReport() {
+  await until(() => document.getElementById("report").dataset.state === "made");
+  const [report] = await Promise.all([
+    context.waitForEvent("page"),
+    page.getByRole("link", { name: "The report" }).click(),
+  ]);
+  report.on("console", (message) => {
+    if (message.type() === "error") problems.push(`report: ${message.text()}`);
+  });
+  await report.reload();
+  demand(
+    (await (await context.request.get(report.url())).text()) === readFileSync(join(session, "report.html"), "utf8"),
+    "the report is not the session's",
+  );
+  const headline = await report.locator(".verdict strong").innerText();
+  demand(headline === (await text("verdict")), `the report says "${headline}", the page ${await text("verdict")}`);
+  const width = await report.evaluate(() => getComputedStyle(document.querySelector("main")).maxWidth);
+  demand(width !== "none", "the report has no style");
+  if (folder) await report.screenshot({ path: join(folder, "dashboard_report.png") });
+  await report.close();
+  say("the report is there");
+}
+
 async function download(name) {
   const [file] = await Promise.all([
     page.waitForEvent("download"),
@@ -148,6 +172,7 @@ await discardOne();
 await captureByKey();
 await surviveTheServer();
 await finish();
+await readTheReport();
 await look("desktop");
 await exportAll();
 await reset();

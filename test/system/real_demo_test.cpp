@@ -95,6 +95,9 @@ TEST_F(RealDemo, CalibratesFoldersWithTheBoardsNumbersAlone) {
   const test::Outcome outcome = Demo(args);
   ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("intrinsics are estimated from "));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("\ncamera     no calibration of it was given: its intrinsics were "
+                        "estimated from "));
   EXPECT_TRUE(std::filesystem::exists(Path("out/report.html")));
   EXPECT_THAT(ReadExtrinsic(Path("out/extrinsic.yaml")),
               test::IsNear(rig_.simulation.T_camera_lidar, 0.7 * kRadPerDeg, 0.03));

@@ -81,6 +81,16 @@ TEST_F(Report, OfAFailureShowsWhatWasSeen) {
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
 }
 
+// A camera that never came, say.
+TEST_F(Report, OfASessionWithoutASampleSaysSo) {
+  const std::string rig = folder_.Write("rig.yaml", test::ShortRigText());
+  folder_.Write("samples.lcm", "");
+  const test::Outcome outcome = test::Run({test::Program("report"), folder_.path(), "--rig", rig});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("no calibration: no sample was taken"));
+  EXPECT_THAT(ReadWholeFile(Path("no_result.html")), HasSubstr("No sample was taken"));
+}
+
 class SimulatedReport : public Report {
  protected:
   void SetUp() override {

@@ -77,6 +77,32 @@ TEST(StatusPage, NamesTwoSessionsThatRunTheSameModule) {
   EXPECT_TRUE(page.IsAllGood(At(5)));  // the first is gone
 }
 
+// tools/up --only: the others may be another host's.
+TEST(StatusPage, WhatWasNotStartedHereIsNoFaultUnlessSomethingIsWaitedFor) {
+  StatusPage page(Channels{}, {}, At(0));
+  SessionFacts facts;
+  facts.is_supervised = true;
+  facts.programs["assessor"].history.is_running = true;
+  page.Take(facts, At(0));
+  page.Take(Status("assessor", 7, "running"), At(9));
+  EXPECT_TRUE(page.IsAllGood(At(9))) << page.Text(At(9));
+  EXPECT_THAT(page.Text(At(9)), ContainsRegex("pose_guide +not started here, not heard\n"));
+  EXPECT_THAT(page.Text(At(9)), HasSubstr("silent  nobody"));
+
+  facts.programs["lidar_board_detector"].history.is_running = true;
+  page.Take(facts, At(9));
+  module_status_t detector = Status("lidar_board_detector", 7, "running");
+  channel_status_t nothing = Channel("LIDAR_POINTS", 0, 0);
+  nothing.rate_hz = 0;
+  AddChannel(nothing, &detector);
+  page.Take(detector, At(9));
+  EXPECT_FALSE(page.IsAllGood(At(9)));
+  EXPECT_THAT(page.Text(At(9)),
+              HasSubstr("The lidar has sent nothing yet: lidar_driver was not started here, and is "
+                        "not heard\n        Start it too (tools/up --only lidar_driver), on its "
+                        "host."));
+}
+
 TEST(StatusPage, LossesAreNotGood) {
   StatusPage page(Channels{}, {"assessor"}, At(0));
   module_status_t status = Status("assessor", 1, "running");

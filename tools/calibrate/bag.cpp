@@ -33,7 +33,11 @@ std::filesystem::path ImportBag(const Rig& rig,
     if (!value.empty()) args.insert(args.end(), {flag, value});
   };
   add("--out", log.string());
-  add("--rig", rig.path.string());
+  if (bag.has_images_only) {
+    args.emplace_back("--images-only");
+  } else {
+    add("--rig", rig.path.string());
+  }
   add("--lidar-channel", rig.channels.lidar_points);
   add("--image-channel", rig.channels.camera_image);
   add("--lidar-topic", bag.lidar_topic);

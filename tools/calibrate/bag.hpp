@@ -12,8 +12,9 @@ namespace voqcal {
 /// A recording of ROS, or an LCM log of packets or other types, as tools/import_ros takes it.
 struct BagInput {
   std::vector<std::string> paths;
-  std::string lidar_topic;  ///< Empty: the only one.
-  std::string image_topic;  ///< Empty: the only one.
+  std::string lidar_topic;       ///< Empty: the only one.
+  std::string image_topic;       ///< Empty: the only one.
+  bool has_images_only = false;  ///< No lidar is looked for.
 };
 
 /// Makes an LCM log of it on the rig's channels, in `folder`. What import_ros says goes to stderr.

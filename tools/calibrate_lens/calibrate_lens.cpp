@@ -9,10 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/bag.hpp"
 #include "calibrate_lens/lens_summary.hpp"
 #include "calibrate_lens/rig_with_camera.hpp"
 #include "common/output_file.hpp"
 #include "common/progress.hpp"
+#include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
 #include "core/lens_calibration/lens_calibration.hpp"
 #include "core/lens_calibration/lens_view.hpp"
@@ -27,6 +29,7 @@ namespace {
 struct LensArgs {
   std::filesystem::path rig;
   std::filesystem::path log;
+  BagInput bag;            ///< Instead of log.
   std::string lens_model;  ///< Empty: the rig file's.
   std::size_t max_images = 2000;
   OutputFile written;
@@ -49,14 +52,16 @@ void RequireSize(const Rig& rig, const cv::Size& image_px) {
   throw std::runtime_error(
       rig.path.string() + ": camera.width_px and height_px are " + std::to_string(camera.width_px) +
       " x " + std::to_string(camera.height_px) + ", the images are " +
-      std::to_string(image_px.width) + " x " + std::to_string(image_px.height));
+      std::to_string(image_px.width) + " x " + std::to_string(image_px.height) +
+      " (who cuts or scales images has a lens for each size: leave both keys out, or give images "
+      "of that size)");
 }
 
-SeenBoards SeeBoards(const Rig& rig, const LensArgs& args) {
+SeenBoards SeeBoards(const Rig& rig, const std::filesystem::path& log, std::size_t max_images) {
   SeenBoards seen;
   Progress progress("images");
-  const std::size_t num_unreadable = ForEachImage(
-      args.log, rig.channels.camera_image, args.max_images, [&](const RecordedImage& image) {
+  const std::size_t num_unreadable =
+      ForEachImage(log, rig.channels.camera_image, max_images, [&](const RecordedImage& image) {
         progress.Show(image.share, std::to_string(seen.views.size()) + " boards");
         ++seen.num_images;
         if (seen.image_px.empty()) {
@@ -113,14 +118,32 @@ void RequireOneCamera(const std::filesystem::path& rig) {
                            "is printed under the camera's name yourself");
 }
 
+/// Of a recording of ROS, an LCM log of its images, as long as this lives.
+class Recording {
+ public:
+  Recording(const Rig& rig, const LensArgs& args) : log_(args.log) {
+    if (args.bag.paths.empty()) return;
+    const bool is_copy_asked_for = !args.written.path.empty();
+    scratch_.emplace(is_copy_asked_for ? args.written.path
+                                       : std::filesystem::temp_directory_path() / "calibrate_lens");
+    log_ = ImportBag(rig, args.bag, RecordingTimes::kAuto, scratch_->path());
+  }
+  const std::filesystem::path& log() const { return log_; }
+
+ private:
+  std::filesystem::path log_;
+  std::optional<ScratchFolder> scratch_;
+};
+
 void CalibrateLensOf(const LensArgs& args) {
   LensInRig lens;
   const Rig rig = LoadRig(args.rig, &lens);
   if (!args.written.path.empty()) {
     RequireOneCamera(args.rig);
+    RequireSamePaths(rig, ReadWholeFile(PlaceOfRig(args.rig).file), args.written.path);
     args.written.Prepare();
   }
-  const SeenBoards seen = SeeBoards(rig, args);
+  const SeenBoards seen = SeeBoards(rig, Recording(rig, args).log(), args.max_images);
   ViewChoiceOptions choice_options;
   choice_options.max_still_motion_px = rig.sample_collector.max_still_motion_px;
   const ViewChoice choice = ChooseViews(seen.views, rig.board, seen.image_px, choice_options);
@@ -156,10 +179,18 @@ int main(int argc, char** argv) {
       "Exit status: 0 found; 1 and 2 errors; 3 it should not be used, and why.",
       "calibrate_lens");
   voqcal::LensArgs args;
+  args.bag.has_images_only = true;
   app.add_option("rig", args.rig, "The rig file (YAML): board and channels")->required();
-  app.add_option(
-         "--log", args.log, "A recording (LCM log), a session's samples.lcm, or a folder of images")
-      ->required();
+  auto* input = app.add_option_group("input", "One of:");
+  input->add_option(
+      "--log", args.log, "A recording (LCM log), a session's samples.lcm, or a folder of images");
+  auto* bag = input->add_option("--bag",
+                                args.bag.paths,
+                                "A recording of ROS 1 or 2: .bag, .mcap, .db3, their folder; "
+                                "several files if it is split");
+  input->require_option(1);
+  app.add_option("--image-topic", args.bag.image_topic, "Of --bag, unless there is only one")
+      ->needs(bag);
   app.add_option("--lens-model",
                  args.lens_model,
                  "By default the rig file's, or automatic: the simplest that predicts images held "

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
+#include "files/yaml_reader.hpp"
 #include "result/camera_yaml.hpp"
+#include "rig/rig_sections.hpp"
 
 namespace voqcal {
 namespace {
@@ -54,7 +57,44 @@ bool HasValueOnItsLine(const std::string& line) {
          (rest.find('[') == std::string::npos) == (rest.find(']') == std::string::npos);
 }
 
+/// All that a rig file names relative to itself.
+std::vector<std::pair<std::string, std::filesystem::path>> PathsOf(const Rig& rig) {
+  const bool is_stream = rig.camera_driver.url.find("://") != std::string::npos;
+  return {{"lcm.types", rig.lcm_types},
+          {"lidar_driver.folder", rig.lidar_driver.folder},
+          {"lidar_driver.sensor.pcap", rig.lidar_sensor.pcap},
+          {"lidar_driver.sensor.calibration", rig.lidar_sensor.calibration},
+          {"lidar_driver.sensor.bias_from", rig.lidar_sensor.bias_from},
+          {"camera_driver.folder", rig.camera_driver.folder},
+          {"camera_driver.url", is_stream ? "" : rig.camera_driver.url},
+          {"extrinsic_monitor.extrinsic", rig.extrinsic_monitor.extrinsic}};
+}
+
 }  // namespace
+
+void RequireSamePaths(const Rig& rig,
+                      const std::string& rig_text,
+                      const std::filesystem::path& copy_path) {
+  YamlDocument document(copy_path.string(), rig_text);
+  Rig copy;
+  copy.path = copy_path;
+  LensInRig may_lack;
+  ReadRigSections(&document, &copy, &may_lack);
+  const auto before = PathsOf(rig);
+  const auto after = PathsOf(copy);
+  const auto whole = [](const std::filesystem::path& path) {
+    return path.empty() ? path : std::filesystem::weakly_canonical(std::filesystem::absolute(path));
+  };
+  std::string moved;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (whole(before[i].second) == whole(after[i].second)) continue;
+    moved += (moved.empty() ? "" : ", ") + before[i].first;
+  }
+  if (moved.empty()) return;
+  throw std::runtime_error(copy_path.string() + ": " + moved +
+                           " of the rig file would be another path there: write the copy beside "
+                           "the rig file, or make it absolute");
+}
 
 std::string RigWithCamera(const std::string& rig_text, const CameraModel& camera) {
   const Lines lines = LinesOf(rig_text);

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <spdlog/spdlog.h>
+
 #include "common/tool_main.hpp"
 #include "core/camera_detection/calibration_target.hpp"
 #include "core/format.hpp"
@@ -165,6 +167,8 @@ int main(int argc, char** argv) {
       is_channels_only,
       "Print just the channels of sensors and operator, as a pattern for lcm-logplayer -e");
   return voqcal::RunTool(&app, argc, argv, [&] {
+    // Scripts ask for these one after the other: what there is to remark was said with the URL.
+    if (is_name_only || is_channels_only) spdlog::set_level(spdlog::level::err);
     if (is_url_only) {  // which all pairs share
       const std::filesystem::path pair = voqcal::PairsOfRig(path).front();
       voqcal::LensInRig lens;

@@ -136,8 +136,11 @@ void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
   samples_t samples{};
   assessment_t assessment{};
   assessment.samples_revision = -1;
-  bus->Subscribe<samples_t>(
-      rig.channels.calib_samples, Queue::kState, [&samples](const samples_t& m) { samples = m; });
+  bool is_heard = false;
+  bus->Subscribe<samples_t>(rig.channels.calib_samples, Queue::kState, [&](const samples_t& m) {
+    samples = m;
+    is_heard = true;
+  });
   bus->Subscribe<assessment_t>(rig.channels.calib_assessment,
                                Queue::kState,
                                [&assessment](const assessment_t& m) { assessment = m; });
@@ -146,8 +149,10 @@ void FinishAndWait(const CommandArgs& args, const Rig& rig, Bus* bus) {
   Clock::time_point next_send = Clock::now();
   while (samples.is_finished == 0 || !IsMadeFrom(samples, assessment)) {
     if (Clock::now() > end) {
-      throw std::runtime_error(
-          samples.is_finished == 0 ? kNoAnswer : "the assessor did not answer: is it running?");
+      throw std::runtime_error(samples.is_finished != 0
+                                   ? "the assessor did not answer: is it running?"
+                               : is_heard ? "the detectors are still at work on earlier frames"
+                                          : kNoAnswer);
     }
     if (samples.is_finished == 0 && Clock::now() >= next_send) {
       Send(args, rig, bus);

@@ -123,6 +123,12 @@ echo "rig        $rig"
 echo "recording  $log"
 echo "result     $out/extrinsic.yaml"
 echo "report     $out/report.html (for a browser)"
+# As draft_rig wrote it down.
+estimated=$(sed -n 's/^camera:  # \(estimated from .*\)/\1/p' "$rig")
+if [ -n "$estimated" ]; then
+  echo "camera     no calibration of it was given: its intrinsics were $estimated."
+  echo "           The result is no better than they are; ${program_prefix}calibrate_lens, or --camera FILE, gives better ones."
+fi
 if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && command -v xdg-open >/dev/null && [ -f "$out/report.html" ]; then
   xdg-open "$out/report.html" >/dev/null 2>&1 || true
 fi

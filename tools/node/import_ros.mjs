@@ -38,6 +38,7 @@ const command = {
     "lidar-channel": { type: "string", default: "LIDAR_POINTS" },
     "image-channel": { type: "string", default: "CAMERA_IMAGE" },
     "camera-info-channel": { type: "string", default: "CAMERA_INFO" },
+    "images-only": { type: "boolean", default: false },
     "print-camera": { type: "boolean", default: false },
   },
   usage: `usage: import_ros RECORDING... --out LOG [--force] [--lidar-topic NAME] [--image-topic NAME]
@@ -49,6 +50,7 @@ const command = {
   --lidar-topic NAME           of type PointCloud2, Livox' CustomMsg or a lidar's packets; may be left out if there is one
                                only, or one is called as the rig's channel
   --image-topic NAME           of type Image or CompressedImage; the same
+  --images-only                no lidar is looked for: the recording is of the camera alone (calibrate_lens)
   --camera-info-topic NAME     of type CameraInfo: goes into the log too
   --lidar-model NAME           whose packets they are (decode_lidar --help lists them), where they do not tell
   --lidar-calibration FILE     the vendor's file on this very unit, for packets; Ouster's is taken from the recording
@@ -127,10 +129,12 @@ async function targetsOf(recording, flags) {
   const choose = (kind, types) =>
     chooseTopic(recording, `${kind}-topic`, flags[`${kind}-topic`], types, flags[`${kind}-channel`]);
   const typeOf = (topic) => recording.topics.get(topic).type;
-  const lidarTopic = choose("lidar", lidarTypes(recording, flags));
+  const lidarTopic = flags["images-only"] ? undefined : choose("lidar", lidarTypes(recording, flags));
   const imageTopic = choose("image", IMAGES);
-  if (PACKETS.includes(typeOf(lidarTopic))) await addPackets(plan, recording, lidarTopic, flags);
-  else plan.set(lidarTopic, cloudTarget(lidarTopic, typeOf(lidarTopic), flags["lidar-channel"]));
+  if (lidarTopic !== undefined) {
+    if (PACKETS.includes(typeOf(lidarTopic))) await addPackets(plan, recording, lidarTopic, flags);
+    else plan.set(lidarTopic, cloudTarget(lidarTopic, typeOf(lidarTopic), flags["lidar-channel"]));
+  }
   plan.set(imageTopic, imageTarget(imageTopic, typeOf(imageTopic), flags["image-channel"]));
   if (flags["camera-info-topic"] !== undefined) {
     const topic = choose("camera-info", CAMERA_INFOS);
@@ -186,7 +190,8 @@ async function firstMessages(recording, plan) {
   for await (const { topic, logTimeNs, data, decode } of recording.messages(names)) {
     const { kind, prepare, stampNs } = plan.get(topic);
     numBytes += data.length;
-    const isEnough = Object.values(first).every((messages) => messages.length >= NUM_SAMPLED);
+    const kinds = [...plan.values()].map((target) => target.kind).filter((each) => each in first);
+    const isEnough = kinds.every((each) => first[each].length >= NUM_SAMPLED);
     if (isEnough || numBytes > MAX_SAMPLED_BYTES) break;
     if (first[kind].length >= NUM_SAMPLED) continue;
     try {

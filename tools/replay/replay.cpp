@@ -12,6 +12,7 @@
 #include <string>
 
 #include "common/tool_main.hpp"
+#include "core/expected.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/log.hpp"
 #include "rig/rig.hpp"
@@ -41,17 +42,13 @@ constexpr std::chrono::seconds kPatience{20};
 /// Every module is heard within it.
 constexpr std::chrono::milliseconds kFirstHearing{1500};
 
-std::int64_t UtimeOf(const LogEvent& event, const Channels& channels) {
-  if (event.channel == channels.lidar_points) {
-    pointcloud2_t message{};
-    if (DecodeMessage(event.bytes.data(), event.bytes.size(), &message).empty())
-      return message.utime;
-  } else {
-    image_t message{};
-    if (DecodeMessage(event.bytes.data(), event.bytes.size(), &message).empty())
-      return message.utime;
-  }
-  return 0;
+/// The frame's time by its sensor; or why no module can read it.
+template <typename Message>
+Expected<std::int64_t, std::string> UtimeOf(const LogEvent& event) {
+  Message message{};
+  const std::string problem = DecodeMessage(event.bytes.data(), event.bytes.size(), &message);
+  if (!problem.empty()) return problem;
+  return message.utime;
 }
 
 /// One sensor's frames: a detector answers each with a board or a miss, and the collector counts
@@ -117,6 +114,16 @@ class Player {
     while (const std::optional<LogEvent> event = NextWhole(&reader)) num_played += Play(*event);
     WaitUntil([this] { return sweeps_.AreAllAnswered() && images_.AreAllAnswered(); });
     std::printf("%lld messages played\n", static_cast<long long>(num_played));
+    for (const auto& [channel, unreadable] : unreadable_) {
+      std::printf("%lld %s left out, which no module could read; the first: %s\n",
+                  static_cast<long long>(unreadable.num),
+                  channel.c_str(),
+                  unreadable.first_problem.c_str());
+    }
+    if (reader.num_damaged() > 0) {
+      std::printf("%lld damaged places of the recording left out\n",
+                  static_cast<long long>(reader.num_damaged()));
+    }
     const std::int64_t num_unanswered = sweeps_.num_unanswered() + images_.num_unanswered();
     if (num_unanswered == 0) return;
     throw std::runtime_error(std::to_string(num_unanswered) +
@@ -124,6 +131,11 @@ class Player {
   }
 
  private:
+  struct Unreadable {
+    std::int64_t num = 0;
+    std::string first_problem;
+  };
+
   /// A recording may end within an event: what came before it is played.
   static std::optional<LogEvent> NextWhole(LogReader* reader) try {
     return reader->Next();
@@ -136,9 +148,9 @@ class Player {
     if (event.channel == channels.calib_command) {
       WaitUntil([this] { return sweeps_.AreAllAnswered() && images_.AreAllAnswered(); });
     } else if (event.channel == channels.lidar_points) {
-      PlayFrame(event, is_lidar_read_, &sweeps_);
+      if (!MayPlay<pointcloud2_t>(event, is_lidar_read_, &sweeps_)) return 0;
     } else if (event.channel == channels.camera_image) {
-      PlayFrame(event, is_camera_read_, &images_);
+      if (!MayPlay<image_t>(event, is_camera_read_, &images_)) return 0;
     } else if (event.channel != channels.camera_info) {
       return 0;  // what the recording's own modules said: the live ones say it again
     }
@@ -146,10 +158,20 @@ class Player {
     return 1;
   }
 
-  void PlayFrame(const LogEvent& event, bool is_read, Frames* frames) {
-    if (!is_read) return;
+  /// Once there is room for a frame. @return false for one that would get no answer: nothing can
+  /// read it.
+  template <typename Message>
+  bool MayPlay(const LogEvent& event, bool is_read, Frames* frames) {
+    const auto utime = UtimeOf<Message>(event);
+    if (!utime) {
+      Unreadable& unreadable = unreadable_[event.channel];
+      if (unreadable.num++ == 0) unreadable.first_problem = utime.error();
+      return false;
+    }
+    if (!is_read) return true;
     WaitUntil([frames] { return frames->MayMoreCome(); });
-    frames->Sent(UtimeOf(event, rig_.channels));
+    frames->Sent(*utime);
+    return true;
   }
 
   template <typename Condition>
@@ -178,7 +200,8 @@ class Player {
   Bus bus_;
   Frames sweeps_;
   Frames images_;
-  bool is_lidar_read_ = false;  ///< A detector is there.
+  std::map<std::string, Unreadable> unreadable_;  ///< By channel.
+  bool is_lidar_read_ = false;                    ///< A detector is there.
   bool is_camera_read_ = false;
 };
 

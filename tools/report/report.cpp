@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "calibrate/collect.hpp"
 #include "common/scratch_folder.hpp"
@@ -20,21 +22,32 @@ struct ReportArgs {
   std::filesystem::path rig;
 };
 
+/// @throws std::runtime_error that says so, and where what was seen instead is.
+[[noreturn]] void TellNoResult(const Rig& rig,
+                               const std::filesystem::path& session,
+                               const std::string& problem,
+                               const std::vector<BoardSample>& samples) {
+  const std::string why = (session / kSamplesLogName).string() + ": no calibration: " + problem;
+  const std::string page_problem = WriteNoResult(rig, why, samples, session, session);
+  throw std::runtime_error(why + (page_problem.empty()
+                                      ? "\nwhat was seen: " + (session / kNoResultName).string()
+                                      : "\nno page of what was seen: " + page_problem));
+}
+
 // A result depends on samples and rig only: what the live modules found is found again, on a copy.
 void Report(const ReportArgs& args) {
   const Rig rig = LoadRig(args.rig);
   const ScratchFolder scratch(args.session / "report");
   InputPaths input;
   input.log = args.session / kSamplesLogName;
+  std::error_code unreadable;  // is said by who reads it
+  if (std::filesystem::is_empty(*input.log, unreadable)) {
+    TellNoResult(rig, args.session, "no sample was taken", {});
+  }
   const auto run = CollectSamples(rig, input, scratch.path());
   run->Finish(/*is_collecting_only=*/false);
   if (!run->assessor().result()) {
-    const std::string why = input.log->string() + ": no calibration: " + run->assessor().problem();
-    const std::string page_problem =
-        WriteNoResult(rig, why, run->samples(), args.session, args.session);
-    throw std::runtime_error(
-        why + (page_problem.empty() ? "\nwhat was seen: " + (args.session / kNoResultName).string()
-                                    : "\nno page of what was seen: " + page_problem));
+    TellNoResult(rig, args.session, run->assessor().problem(), run->samples());
   }
   std::filesystem::remove(args.session / kNoResultName);
   const std::string problem = WriteReport(rig, *run, scratch.path());

@@ -55,7 +55,7 @@ class Listener {
         rig_(LoadRig(args.rig)),
         url_(args.lcm_url.value_or(rig_.lcm_url)),
         bus_(url_),
-        page_(rig_.channels, args.modules.empty() ? AllModuleNames() : args.modules, Clock::now()) {
+        page_(rig_.channels, args.modules, Clock::now()) {
     bus_.Subscribe<module_status_t>(
         rig_.channels.module_status, Queue::kEvery, [this](const module_status_t& m) {
           page_.Take(m, Clock::now());
@@ -214,7 +214,11 @@ int main(int argc, char** argv) {
   voqcal::StatusArgs args;
   app.add_option("rig", args.rig, "The rig file (YAML)")->required();
   app.add_option("--lcm-url", args.lcm_url, "Instead of the rig file's");
-  app.add_option("--modules", args.modules, "Those that should be heard; without it all")
+  app.add_option(
+         "--modules",
+         args.modules,
+         "Those that should be heard; without it those that the session runs on this host, or "
+         "all")
       ->delimiter(',')
       ->check(CLI::IsMember(voqcal::AllModuleNames()));
   app.add_option("--session",

@@ -57,7 +57,21 @@ std::string FaultText(const Fault& fault) {
 }  // namespace
 
 StatusPage::StatusPage(const Channels& channels, std::vector<std::string> modules, Time begin)
-    : modules_(std::move(modules)), health_(channels, modules_, begin) {}
+    : are_modules_given_(!modules.empty()),
+      modules_(are_modules_given_ ? std::move(modules) : AllModuleNames()),
+      health_(channels, modules_, begin) {}
+
+// tools/up --only starts some here; the others may be another host's, or nobody's.
+void StatusPage::Take(const SessionFacts& facts, Time now) {
+  health_.Take(facts, now);
+  if (are_modules_given_) return;
+  std::vector<std::string> started;
+  for (const std::string& module : AllModuleNames()) {
+    if (facts.programs.count(module) != 0) started.push_back(module);
+  }
+  modules_ = started.empty() ? AllModuleNames() : started;
+  health_.Expect(modules_);
+}
 
 void StatusPage::Take(const event_t& event) {
   events_.push_back(event);
@@ -88,7 +102,7 @@ std::string StatusPage::Details(Time now) const {
 }
 
 std::vector<std::string> StatusPage::Listed() const {
-  std::vector<std::string> listed = modules_;
+  std::vector<std::string> listed = are_modules_given_ ? modules_ : AllModuleNames();
   for (const auto& each : health_.heartbeats().heard()) {
     const bool is_new = std::find(listed.begin(), listed.end(), each.first) == listed.end();
     if (is_new) listed.push_back(each.first);
@@ -117,7 +131,10 @@ std::string StatusPage::LineOf(const std::string& module, Time now) const {
   const ModuleHealth health = health_.HealthOf(module, now);
   const auto found = health_.heartbeats().heard().find(module);
   if (found == health_.heartbeats().heard().end()) {
-    const std::string how = health == ModuleHealth::kEnded ? health_.HowEnded(module) : "not heard";
+    const bool is_expected = std::find(modules_.begin(), modules_.end(), module) != modules_.end();
+    const std::string how = health == ModuleHealth::kEnded ? health_.HowEnded(module)
+                            : is_expected                  ? "not heard"
+                                                           : "not started here, not heard";
     return Format("%-22s %s\n", module.c_str(), how.c_str());
   }
   const HeardModule& heard = found->second;

@@ -14,11 +14,12 @@ class StatusPage {
  public:
   using Time = RigHealth::Time;
 
-  /// @param modules  those that should be heard, in the page's order. Others are listed too.
+  /// @param modules  those that should be heard, in the page's order. Others are listed too. Empty:
+  /// those of the session that runs on this host; without one, all.
   StatusPage(const Channels& channels, std::vector<std::string> modules, Time begin);
 
   void Take(const module_status_t& status, Time now) { health_.Take(status, now); }
-  void Take(const SessionFacts& facts, Time now) { health_.Take(facts, now); }
+  void Take(const SessionFacts& facts, Time now);
   void Take(const event_t& event);
 
   /// True if each module that should be heard is well, there is no grave fault and nothing was
@@ -43,7 +44,8 @@ class StatusPage {
   std::string DetailsOf(const std::string& module) const;
   std::string LastLines(Time now) const;
 
-  std::vector<std::string> modules_;
+  bool are_modules_given_;
+  std::vector<std::string> modules_;  ///< That should be heard.
   RigHealth health_;
   std::deque<event_t> events_;  ///< The newest last.
 };

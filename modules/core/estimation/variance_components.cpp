@@ -171,8 +171,7 @@ MixedDifference DifferenceOf(const BoardSample& sample,
 
 MixedMatrix MixedPriorInformation(const SharedErrors& prior) {
   MixedMatrix information = MixedMatrix::Zero();
-  information.diagonal().tail<kNumSharedErrors>() =
-      ToVector(prior).cwiseAbs2().cwiseInverse();
+  information.diagonal().tail<kNumSharedErrors>() = ToVector(prior).cwiseAbs2().cwiseInverse();
   return information;
 }
 

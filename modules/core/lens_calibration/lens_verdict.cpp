@@ -55,13 +55,25 @@ double ShiftSigma(const LensFit& fit) {
   return fit.shift_sigma_px / std::min(fit.camera.fx_px, fit.camera.fy_px);
 }
 
+bool HasSquarePixels(const CameraModel& camera) {
+  return std::abs(camera.fx_px / camera.fy_px - 1) < 0.1;
+}
+
 bool CouldBeACamera(const CameraModel& camera) {
   const auto is_near_middle = [](double centre_px, double size_px) {
     return centre_px > 0.2 * size_px && centre_px < 0.8 * size_px;
   };
-  return std::abs(camera.fx_px / camera.fy_px - 1) < 0.1 &&
-         is_near_middle(camera.cx_px, camera.width_px) &&
+  return HasSquarePixels(camera) && is_near_middle(camera.cx_px, camera.width_px) &&
          is_near_middle(camera.cy_px, camera.height_px);
+}
+
+std::string HowToBeACamera(const CameraModel& camera, const LensCoverage& coverage) {
+  if (LacksTilt(coverage)) return HowToTilt(coverage);
+  const char* const what =
+      HasSquarePixels(camera) ? "cut on one side" : "squeezed to another shape";
+  return std::string("if the images were ") + what +
+         ", give them as the camera takes them, or cut or scaled alike on all sides; else " +
+         HowToTilt(coverage);
 }
 
 std::string RefusalOf(const LensCalibrationOptions& options, const LensCalibration& result) {
@@ -105,7 +117,7 @@ std::string RefusalOf(const LensCalibrationOptions& options, const LensCalibrati
                   fit.camera.fy_px,
                   fit.camera.cx_px,
                   fit.camera.cy_px) +
-           HowToTilt(coverage);
+           HowToBeACamera(fit.camera, coverage);
   }
   return "";
 }

@@ -77,6 +77,21 @@ TEST(CalibrateLens, RefusesWhatNoLensExplains) {
   EXPECT_THAT(found.refusal, HasSubstr("the RMS is"));
 }
 
+// What was done to the images, as far as their lens tells it.
+TEST(CalibrateLens, RefusesImagesThatWereSqueezedOrCut) {
+  const auto refusal_of = [](const CameraModel& camera) {
+    test::LensViewsOptions options;
+    options.num_views = 20;
+    return Calibrate(camera, test::MakeLensViews(camera, options), camera.lens).refusal;
+  };
+  CameraModel squeezed = test::SmallCamera(LensModel::kPlumbBob);
+  squeezed.fy_px *= 0.75;
+  EXPECT_THAT(refusal_of(squeezed), HasSubstr("if the images were squeezed to another shape"));
+  CameraModel cut = test::SmallCamera(LensModel::kPlumbBob);
+  cut.cx_px = 0.1 * cut.width_px;
+  EXPECT_THAT(refusal_of(cut), HasSubstr("if the images were cut on one side"));
+}
+
 TEST(CalibrateLens, NamesBadOptions) {
   LensCalibrationOptions options;
   options.num_groups = 1;

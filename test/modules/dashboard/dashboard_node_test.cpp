@@ -59,13 +59,39 @@ class DashboardNodeTest : public test::ChainTest {
     test::Send(&bus_, rig_.channels.calib_event, event);
   }
 
+  void ClickFinish() {
+    test::SocketClient page = Page();
+    page.Send(R"({"command": "finish"})");
+    while (commands_.messages.empty()) {
+      Step(&node_);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    commands_.messages.clear();
+  }
+  /// Once there is no more to wait for.
+  Json ReportWhenDone() {
+    Json report;
+    do {
+      node_.Republish();
+      test::SocketClient page = Page();
+      report = Next(&page, "report");
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    } while (report["state"] == "making");
+    return report;
+  }
+  test::http::response<test::http::string_body> Get(const std::string& file) const {
+    const std::string host = "127.0.0.1:" + std::to_string(server_.port());
+    return test::Request(server_.port(), "/" + TestOptions().token + "/export/" + file, {host, ""});
+  }
+
   test::TemporaryFolder folder_;
   VoqSelectorNode selector_{rig_, &bus_};
   ExtrinsicEstimatorNode estimator_{rig_, &bus_};
   ExtrinsicRefinerNode refiner_{rig_, &bus_};
   AssessorNode assessor_{rig_, &bus_, folder_.path()};
   DashboardServer server_{TestOptions()};
-  DashboardNode node_{rig_, &bus_, &server_, folder_.path()};
+  std::string report_script_ = folder_.path() / "make_report.sh";
+  DashboardNode node_{rig_, &bus_, &server_, folder_.path(), {"/bin/sh", report_script_}};
   test::Inbox<command_t> commands_{&bus_, rig_.channels.calib_command};
 };
 
@@ -161,6 +187,56 @@ TEST_F(DashboardNodeTest, SendsCommands) {
   EXPECT_EQ(commands_.messages[0].command, "discard");
   EXPECT_EQ(commands_.messages[0].sample_id, 5);
   EXPECT_GT(commands_.messages[0].utime, 0);
+}
+
+TEST_F(DashboardNodeTest, MakesAndOffersTheReportOnceFinishWasClicked) {
+  folder_.Write(
+      "make_report.sh",
+      "echo \"<p>of log's hash</p>\" > '" + (folder_.path() / "report.html").string() + "'");
+  SendSamples(test::NoisySamples(8), 8);
+  Calibrate();
+  EXPECT_EQ(ReportWhenDone()["state"], "");  // the samples are finished, by whoever did it
+  ClickFinish();
+  const Json report = ReportWhenDone();
+  EXPECT_EQ(report["state"], "made");
+  EXPECT_EQ(report["file"], "report.html");
+  EXPECT_EQ(report["folder"], folder_.path().string());
+  const auto page = Get("report.html");
+  EXPECT_EQ(page.body(), "<p>of log's hash</p>\n");
+  EXPECT_THAT(std::string(page["Content-Security-Policy"]), HasSubstr("style-src 'unsafe-inline'"));
+  EXPECT_EQ(Get("extrinsic.yaml").result_int(), 200U);
+  SendSamples(test::NoisySamples(9), 9, "another hash");
+  EXPECT_EQ(ReportWhenDone()["state"], "");
+  EXPECT_EQ(Get("report.html").result_int(), 404U);
+}
+
+// By tools' "command", say.
+TEST_F(DashboardNodeTest, OffersAReportThatAnotherMade) {
+  folder_.Write("report.html", "of other samples");
+  SendSamples(test::NoisySamples(8), 8);
+  Calibrate();
+  EXPECT_EQ(ReportWhenDone()["state"], "");
+  folder_.Write("report.html", "of log's hash");
+  EXPECT_EQ(ReportWhenDone()["state"], "made");
+}
+
+TEST_F(DashboardNodeTest, OffersWhatWasSeenWhereThereIsNoResult) {
+  folder_.Write("make_report.sh",
+                "echo seen > '" + (folder_.path() / "no_result.html").string() + "'; exit 1");
+  SendSamples(test::NoisySamples(2), 2);
+  Calibrate();
+  ClickFinish();
+  const Json report = ReportWhenDone();
+  EXPECT_EQ(report["state"], "made");
+  EXPECT_EQ(report["file"], "no_result.html");
+  EXPECT_EQ(Get("no_result.html").body(), "seen\n");
+}
+
+TEST_F(DashboardNodeTest, SaysThatNoReportCouldBeMade) {
+  SendSamples(test::NoisySamples(8), 8);
+  Calibrate();
+  ClickFinish();
+  EXPECT_EQ(ReportWhenDone()["state"], "failed");
 }
 
 // Step is never called: one message after the other is handled.

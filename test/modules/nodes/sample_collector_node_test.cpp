@@ -263,6 +263,26 @@ TEST_F(SampleCollectorNodeTest, FinishesWhileSensorsGoOnOnceDetectorsArePastIt) 
   EXPECT_FALSE(last().is_finished);
 }
 
+// The camera never came, or has stopped: there is nothing of it to wait for.
+TEST_F(SampleCollectorNodeTest, FinishesThoughOneSensorIsSilentWhileTheOtherGoesOn) {
+  const auto frames = test::StillFrames(samples_, 0);
+  const auto show_to_lidar = [&](std::size_t i) {
+    pointcloud2_t sweep{};
+    sweep.utime = frames[i].lidar.utime;
+    test::Send(bus_.get(), rig_.channels.lidar_points, sweep);
+    test::Send(bus_.get(), rig_.channels.lidar_board, frames[i].lidar);
+  };
+  test::Send(bus_.get(), rig_.channels.camera_image, image_t{});
+  show_to_lidar(0);
+  Command("finish");
+  show_to_lidar(1);
+  Republish();  // the image's detector may still be at work
+  EXPECT_FALSE(last().is_finished);
+  show_to_lidar(2);
+  Republish();
+  EXPECT_TRUE(last().is_finished);
+}
+
 // As the end of its recording does: the replay gives the same samples.
 TEST_F(SampleCollectorNodeTest, FinishJudgesTheFramesThatWaitAlsoWhileSensorsGoOn) {
   auto frames = test::StillFrames(samples_, 0);

@@ -56,6 +56,23 @@ TEST(LoadRig, NeedsOnlyNameBoardAndCamera) {
   EXPECT_EQ(rig.consistency.max_angle_rad, ConsistencyOptions().max_angle_rad);
 }
 
+// Rig files of sessions that were recorded long ago are read as ever.
+TEST(LoadRig, NamesKeysThatAreNoLongerUsedAndWhatReplacesThem) {
+  EXPECT_TRUE(Load(Minimal()).remarks.empty());
+  const Rig rig = Load(Minimal() +
+                       "assessor:\n"
+                       "  scene_check: {turn_tolerance_deg: 0.2, tolerance_deg: 0.5}\n"
+                       "  diagnosis:\n"
+                       "    min_focal_scale: 0.001\n");
+  ASSERT_EQ(rig.remarks.size(), 2U);
+  EXPECT_THAT(rig.remarks[0],
+              EndsWith("rig.yaml:6: assessor.scene_check.tolerance_deg is no longer used, see "
+                       "assessor.scene_check.turn_tolerance_deg"));
+  EXPECT_THAT(rig.remarks[1],
+              EndsWith("rig.yaml:8: assessor.diagnosis.min_focal_scale is no longer used, see "
+                       "assessor.diagnosis.min_moved_intervals"));
+}
+
 TEST(LoadRig, ConvertsDegreesAndPutsThePrefixBeforeEachChannel) {
   const Rig rig = Load(Minimal() +
                        "lcm: {channel_prefix: LEFT_}\nchannels: {lidar_points: SWEEPS}\n"

@@ -20,6 +20,12 @@ test("what was before the page was opened is no news", () => {
   assert.deepEqual(numbers(news.since(events(9, 8, 7, 6))), []);
 });
 
+test("the first event of all is news to a page that was open before it", () => {
+  const news = new News();
+  assert.deepEqual(news.since([]), []);
+  assert.deepEqual(numbers(news.since(events(0))), [0]);
+});
+
 test("a collector that was started again counts anew, and old events stay old", () => {
   const news = new News();
   news.since(events(12, 11, 10));

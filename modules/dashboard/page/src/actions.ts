@@ -95,7 +95,8 @@ export class Actions {
   private enable(): void {
     const set = (id: string, isOn: boolean) => (byId<HTMLButtonElement>(id).disabled = !isOn);
     set("capture", this.isLive && this.mayCapture);
-    for (const id of ["discard", "finish", "reset"]) set(id, this.isLive && this.hasSamples);
+    set("finish", this.isLive);  // without samples it tells what was seen instead
+    for (const id of ["discard", "reset"]) set(id, this.isLive && this.hasSamples);
   }
 
   private showWaiting(text: string): void {

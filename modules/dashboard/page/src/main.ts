@@ -8,7 +8,7 @@ import { Coverage } from "./coverage.ts";
 import { byId, setText } from "./dom.ts";
 import { healthView, type HealthView } from "./health.ts";
 import { ImageView } from "./image_view.ts";
-import { showEvents, showFaults, showGuidance, showModules, showNoGuidance, showResult, showSamples } from "./panels.ts";
+import { showEvents, showFaults, showGuidance, showModules, showNoGuidance, showReport, showResult, showSamples } from "./panels.ts";
 import type { CameraBoard, Guidance, ImageFrame, LidarBoard, Message, Modules } from "./protocol.ts";
 import { SceneView } from "./scene_view.ts";
 
@@ -123,6 +123,9 @@ function take(message: Message): void {
     case "result":
       showResult(message);
       scene?.showResult(message);
+      break;
+    case "report":
+      showReport(message);
       break;
     case "guidance":
       guidance = message;

@@ -12,12 +12,13 @@ export class News {
   /** Those since the last call, the newest first; what was before the first call is no news. */
   since(events: Event[]): Event[] {
     const run = newestRun(events);
+    const isFirstCall = !this.hasBegun;
+    this.hasBegun = true;
     const newest = run[0];
     if (!newest) return [];
     const isNewRun = newest.seq < this.lastSeq;
-    const news = this.hasBegun ? run.filter((event) => isNewRun || event.seq > this.lastSeq) : [];
+    const news = isFirstCall ? [] : run.filter((event) => isNewRun || event.seq > this.lastSeq);
     this.lastSeq = newest.seq;
-    this.hasBegun = true;
     return news;
   }
 }

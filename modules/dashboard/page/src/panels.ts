@@ -1,7 +1,7 @@
 // The parts of the page that are text: guidance, estimate, samples, rejects, modules.
 
 import { byId, element, number, setText } from "./dom.ts";
-import type { Check, Events, Fault, Guidance, Modules, Result, Sample, Samples } from "./protocol.ts";
+import type { Check, Events, Fault, Guidance, Modules, Report, Result, Sample, Samples } from "./protocol.ts";
 
 /** Says what there is instead of an order, where nothing would come of one. */
 export function showNoGuidance(instead: string): void {
@@ -67,6 +67,18 @@ export function showResult(result: Result): void {
   const marked = verdict.checks.filter((check) => !isGood(check));
   byId("marked").replaceChildren(...[...marked.filter(isBad), ...marked.filter((check) => !isBad(check))].map(checkItem));
   byId("checks").replaceChildren(...verdict.checks.filter(isGood).map(checkItem));
+}
+
+export function showReport({ state, file, folder }: Report): void {
+  const line = byId("report");
+  line.hidden = state === "";
+  line.dataset.state = state;
+  if (state === "making") line.replaceChildren("Making the report");
+  if (state === "failed") line.replaceChildren(`No report could be made: see ${folder}/report.txt`);
+  if (state !== "made") return;
+  const name = file === "report.html" ? "The report" : "What was seen instead";
+  const link = element("a", { href: `export/${file}`, target: "_blank", rel: "noopener" }, name);
+  line.replaceChildren(link, element("span", { class: "soft" }, ` ${folder}/${file}`));
 }
 
 function checkItem(check: Check): HTMLElement {

@@ -67,6 +67,14 @@ export interface Result {
   exports?: string[];
 }
 
+export interface Report {
+  kind: "report";
+  state: "" | "making" | "made" | "failed";
+  file: string;
+  /** On the session's host. */
+  folder: string;
+}
+
 export interface Guidance {
   kind: "guidance";
   problem: string;
@@ -157,6 +165,7 @@ export type Message =
   | Rig
   | Samples
   | Result
+  | Report
   | Guidance
   | Events
   | Modules

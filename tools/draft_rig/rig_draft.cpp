@@ -122,7 +122,7 @@ std::string RigDraft::Text() const {
 Rig RigDraft::Read() const {
   YamlDocument document("the drafted rig file", Text());
   Rig rig;
-  ReadRigSections(&document, &rig);
+  ReadRigSections({"the drafted rig file", {}}, &document, &rig);
   document.ThrowIfWrong();
   return rig;
 }

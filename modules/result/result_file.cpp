@@ -121,8 +121,9 @@ std::string ToYaml(const CalibrationResult& result) {
          "covariance:\n" +
          covariance + VerdictYaml(VerdictOf(result)) + Methods(result) + Averaged(result.averaged) +
          LidarBiasYaml(result.lidar_bias) +
-         "# all chessboards against the rays to their centres, about the camera's x and y, as a\n"
-         "# principal point does that is given wrongly\n"
+         "# all chessboards are seen turned by so much about the camera's x and y, against the "
+         "rays\n"
+         "# to their centres, as by a principal point that is given wrongly\n"
          "chessboard_turn_rad: [" +
          NumberText(result.chessboard_turn_rad.x()) + ", " +
          NumberText(result.chessboard_turn_rad.y()) + "]\n" +

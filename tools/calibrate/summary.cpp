@@ -59,8 +59,9 @@ std::string MethodLines(const CalibrationResult& result) {
   }
   text += ")\n";
   if (!result.scene_note.empty()) text += "scene   " + result.scene_note + "\n";
-  if (!result.chessboard_turn_rad.isZero()) {
-    const Eigen::Vector2d turn_deg = kDegPerRad * result.chessboard_turn_rad;
+  constexpr double kLeastDeg = 0.05;
+  const Eigen::Vector2d turn_deg = kDegPerRad * result.chessboard_turn_rad;
+  if (turn_deg.norm() > kLeastDeg) {
     text += Format(
         "chessboards  turned by %+.2f %+.2f deg about the camera's x and y against the rays to "
         "them, as a principal point that is off does: taken out\n",

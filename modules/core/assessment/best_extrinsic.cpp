@@ -75,7 +75,7 @@ SceneScore ReprojectionHeldOut(const std::vector<const BoardSample*>& samples,
 Eigen::Vector2d ChessboardTurn(const LikelihoodExtrinsic& likelihood,
                                const MixedFit& sightings,
                                const Eigen::Isometry3d& T_camera_lidar) {
-  if (likelihood.IsUsable()) return likelihood.LensUnknownsAt(T_camera_lidar);
+  if (likelihood.IsUsable()) return likelihood.ChessboardTurnAt(T_camera_lidar);
   const SharedErrors shared = sightings.SharedAt(T_camera_lidar);
   return {shared.chessboard_turn_x_rad, shared.chessboard_turn_y_rad};
 }
@@ -86,9 +86,10 @@ SceneScore LikelihoodHeldOut(const std::vector<const BoardSample*>& samples,
   return ScoreEach(samples, without, [&](const BoardSample& sample, const WithoutOne& others) {
     const LikelihoodExtrinsic& refined = others.likelihood;
     if (!refined.IsUsable()) return PoseScore{};
-    return ScorePose(CorrectedSample(sample, refined.bias, refined.lens_unknowns.values),
-                     camera,
-                     refined.T_camera_lidar);
+    return ScorePose(
+        CorrectedSample(sample, refined.bias, refined.ChessboardTurnAt(refined.T_camera_lidar)),
+        camera,
+        refined.T_camera_lidar);
   });
 }
 
@@ -293,16 +294,18 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
     case RefineMethod::kLikelihood:
       best.T_camera_lidar = best.likelihood.T_camera_lidar;
       best.covariance = best.likelihood.uncertainty.covariance;
-      best.chessboard_turn_rad =
-          ChessboardTurn(best.likelihood, best.joint.sightings, best.T_camera_lidar);
       break;
     case RefineMethod::kJoint:
       best.T_camera_lidar = best.joint.T_camera_lidar();
       best.covariance = best.joint.covariance();
-      best.chessboard_turn_rad =
-          ChessboardTurn(best.likelihood, best.joint.sightings, best.T_camera_lidar);
       best.scene_note = best.joint.scene.reason;
       break;
+  }
+  const bool is_turn_taken_out =
+      best.method == RefineMethod::kLikelihood || best.method == RefineMethod::kJoint;
+  if (best.IsUsable() && is_turn_taken_out) {
+    best.chessboard_turn_rad =
+        ChessboardTurn(best.likelihood, best.joint.sightings, best.T_camera_lidar);
   }
   best.reprojection_rms_px = CentreRmsPx(ScoreScene(samples, camera, best.T_camera_lidar));
   return best;

@@ -21,6 +21,7 @@ constexpr Limits kOverfitRatio{1.5, 3.0};  // 1.1 is common with 30 poses
 constexpr Limits kSigmaDeg{0.05, 0.2};     // 0.05 degrees is 9 mm at 10 m
 constexpr Limits kSigmaMm{3.0, 5.0};       // 95 in 100 are within twice as much: 10 mm
 constexpr Limits kNormalDeg{0.7, 2.0};     // a clean simulated VLP-16 shows about 0.6
+constexpr Limits kTurnDeg{0.7, 2.0};       // of 1000 px, 12 and 35 px of the principal point
 constexpr int kFewestPoses = 6;
 constexpr Limits kNumCells{5, 2};  // of the 9 parts of the image
 constexpr Limits kLeftOutShare{0.15, 0.4};
@@ -95,6 +96,19 @@ void AddFit(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
             "samples, tilted to all sides."
           : "Something that the centres do not show is wrong: the board's size, the camera's "
             "intrinsics or the lidar's ranges. Check board and camera in the rig file.",
+      checks);
+}
+
+/// What was taken out of the directions, so that they do not show it.
+void AddChessboardTurn(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
+  if (evidence.chessboard_turn_deg == 0.0) return;
+  AddNumber(
+      "Boards and rays",
+      evidence.chessboard_turn_deg,
+      kTurnDeg,
+      "All chessboards are turned by " + Number(evidence.chessboard_turn_deg, 2, "degrees") +
+          " against the rays to them, as by a principal point that is off. This was taken out.",
+      "Check camera.cx_px and cy_px in the rig file (calibrate_lens finds them).",
       checks);
 }
 
@@ -191,6 +205,7 @@ std::string ToString(Grade grade) {
 Verdict VerdictOf(const Evidence& evidence) {
   Verdict verdict;
   AddFit(evidence, &verdict.checks);
+  AddChessboardTurn(evidence, &verdict.checks);
   AddCertainty(evidence, &verdict.checks);
   AddPoses(evidence, &verdict.checks);
   AddScene(evidence, &verdict.checks);

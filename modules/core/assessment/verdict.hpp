@@ -13,8 +13,9 @@ struct Evidence {
   double held_out_mm = std::numeric_limits<double>::quiet_NaN();   ///< Mean centre error.
   double in_sample_mm = std::numeric_limits<double>::quiet_NaN();  ///< The same of the fit's poses.
   double normal_deg = std::numeric_limits<double>::quiet_NaN();    ///< Mean, held out.
-  double sigma_deg = std::numeric_limits<double>::quiet_NaN();     ///< Of the worst axis.
-  double sigma_mm = std::numeric_limits<double>::quiet_NaN();      ///< Of the translation's length.
+  double chessboard_turn_deg = 0.0;  ///< Calibration's, about both axes; zero: not estimated.
+  double sigma_deg = std::numeric_limits<double>::quiet_NaN();  ///< Of the worst axis.
+  double sigma_mm = std::numeric_limits<double>::quiet_NaN();   ///< Of the translation's length.
   int num_used = 0;
   bool is_enough = false;  ///< Enough's, as the guide says it.
   std::string enough_words;

@@ -13,6 +13,7 @@ namespace voqcal {
 
 /// [the extrinsic's perturbation (6); SharedErrors (5), in their order].
 constexpr int kNumSharedErrors = 5;
+static_assert(sizeof(SharedErrors) == kNumSharedErrors * sizeof(double));
 constexpr int kMixedSize = 6 + kNumSharedErrors;
 using MixedVector = Eigen::Matrix<double, kMixedSize, 1>;
 using MixedMatrix = Eigen::Matrix<double, kMixedSize, kMixedSize>;

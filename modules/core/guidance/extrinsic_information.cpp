@@ -14,16 +14,14 @@ namespace {
 constexpr double kPriorRad = 0.5;
 constexpr double kPriorM = 0.5;
 
-constexpr Eigen::Index kNumTurns = 2;  // of ChessboardTurnTerms, after the rings
-
 Eigen::VectorXd FaultsOf(const LidarBias& bias, Eigen::Index num_faults) {
   Eigen::VectorXd faults_m = Eigen::VectorXd::Zero(num_faults);
   faults_m[kCommon] = bias.common.value_m;
   faults_m[kDarkStep] = bias.dark_step.value_m;
   faults_m[kLift] = bias.outline_lift.value_m;
   faults_m[kRise] = bias.outline_rise.value_m;
-  const auto num_rings =
-      std::min(num_faults - kFirstRing - kNumTurns, static_cast<Eigen::Index>(bias.rings.size()));
+  const auto num_rings = std::min(num_faults - kFirstRing - kNumChessboardTurns,
+                                  static_cast<Eigen::Index>(bias.rings.size()));
   for (Eigen::Index i = 0; i < num_rings; ++i) {
     faults_m[kFirstRing + i] = bias.rings[static_cast<std::size_t>(i)].value_m;
   }
@@ -49,10 +47,10 @@ ExtrinsicInformation::ExtrinsicInformation(const std::vector<const BoardSample*>
                                            int num_rings)
     : belief_(belief),
       options_(options),
-      num_faults_(kFirstRing + num_rings + kNumTurns),
+      num_faults_(kFirstRing + num_rings + kNumChessboardTurns),
       prior_information_(FaultPriorInformation(options, num_faults_)),
       is_free_(FreeFaults(belief.bias, num_faults_)) {
-  prior_information_.tail<kNumTurns>() =
+  prior_information_.tail<kNumChessboardTurns>() =
       ChessboardTurnTerms().prior_sigmas.cwiseAbs2().cwiseInverse();
   information_ = InformationOf(samples, belief.bias, belief.noise);
   information_.diagonal().tail(num_faults_) += prior_information_;
@@ -66,7 +64,7 @@ Eigen::MatrixXd ExtrinsicInformation::InformationOf(const std::vector<const Boar
   LikelihoodState state;
   state.T_camera_lidar = belief_.T_camera_lidar;
   state.faults_m = FaultsOf(bias, num_faults_);
-  state.num_lens = kNumTurns;
+  state.num_lens = kNumChessboardTurns;
   std::vector<LikelihoodPose> poses;
   for (const BoardSample* sample : samples) {
     poses.push_back(MakeLikelihoodPose(*sample, bias.shades, belief_.T_camera_lidar));

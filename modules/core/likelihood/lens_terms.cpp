@@ -30,13 +30,12 @@ Matrix2Ld PixelByLens(const CameraModel& camera, const Eigen::Vector3d& point_ca
 }  // namespace
 
 LensTerms ChessboardTurnTerms() {
-  constexpr Eigen::Index kNumTurns = 2;
   LensTerms terms;
-  terms.board_by_lens.setZero(6, kNumTurns);
-  terms.board_by_lens.topRows<kNumTurns>() = -Eigen::Matrix2d::Identity();
-  terms.information.setZero(kNumTurns, kNumTurns);
-  terms.pull.setZero(kNumTurns);
-  terms.prior_sigmas.setConstant(kNumTurns, kPriorChessboardTurnRad);
+  terms.board_by_lens.setZero(6, kNumChessboardTurns);
+  terms.board_by_lens.topRows<kNumChessboardTurns>() = -Eigen::Matrix2d::Identity();
+  terms.information.setZero(kNumChessboardTurns, kNumChessboardTurns);
+  terms.pull.setZero(kNumChessboardTurns);
+  terms.prior_sigmas.setConstant(kNumChessboardTurns, kPriorChessboardTurnRad);
   return terms;
 }
 

@@ -25,6 +25,8 @@ struct LensTerms {
   Eigen::Index NumErrors() const { return pull.size(); }
 };
 
+constexpr Eigen::Index kNumChessboardTurns = 2;
+
 /// Of two errors alone, which stand for those of the intrinsics where these are not asked for:
 /// SharedErrors' chessboard_turn, radians. The extrinsic then goes with the intrinsics as given.
 /// The corners tell nothing of them.

@@ -34,9 +34,10 @@ LidarBias LikelihoodExtrinsic::BiasAt(const Eigen::Isometry3d& T_camera_lidar_gi
   return moved;
 }
 
-Eigen::VectorXd LikelihoodExtrinsic::LensUnknownsAt(
+Eigen::Vector2d LikelihoodExtrinsic::ChessboardTurnAt(
     const Eigen::Isometry3d& T_camera_lidar_given) const {
-  return lens_unknowns.values + faults_by_extrinsic.bottomRows(lens_unknowns.values.size()) *
+  if (lens_unknowns.values.size() != kNumChessboardTurns) return Eigen::Vector2d::Zero();
+  return lens_unknowns.values + faults_by_extrinsic.bottomRows(kNumChessboardTurns) *
                                     DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
 }
 

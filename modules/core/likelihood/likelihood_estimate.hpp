@@ -73,8 +73,9 @@ struct LikelihoodExtrinsic {
   bool IsUsable() const { return status == RefineStatus::kConverged; }
   /// The most likely bias if that is the extrinsic; to first order.
   LidarBias BiasAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
-  /// The same of the lens_unknowns.
-  Eigen::VectorXd LensUnknownsAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
+  /// The same of the chessboards' turn (SharedErrors), about the camera's x and y; zero where all
+  /// of the lens was asked for, or nothing is known.
+  Eigen::Vector2d ChessboardTurnAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
   std::string Summary() const;  ///< One line for a log.
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -52,6 +53,9 @@ LikelihoodSearch::LikelihoodSearch(std::vector<LikelihoodPose> poses,
 void LikelihoodSearch::StartFrom(const LidarBias& bias,
                                  const LensUnknowns& lens,
                                  const LikelihoodNoise& noise) {
+  if (static_cast<Eigen::Index>(lens.is_observable.size()) != state_.num_lens) {
+    throw std::logic_error("the likelihood that is refined again had other unknowns of the lens");
+  }
   const auto take = [this](Eigen::Index fault, const BiasEstimate& estimate) {
     is_free_[static_cast<std::size_t>(fault)] = estimate.is_observable;
     state_.faults_m[fault] = estimate.value_m;

@@ -98,7 +98,8 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
   };
   const Eigen::Vector2d principal_point_px(camera.cx_px, camera.cy_px);
   Vector6d variance = Vector6d::Zero();
-  if (search.state().num_lens != kNumLensErrors) {  // else the likelihood counts them
+  const bool are_intrinsics_unknown = search.state().num_lens == kNumLensErrors;
+  if (!are_intrinsics_unknown) {  // else the likelihood counts them
     variance += by_lens([&](const Eigen::Vector2d& pixel_px) -> Eigen::Vector2d {
       return trust * options.focal_length_error * (pixel_px - principal_point_px);
     });

@@ -47,7 +47,7 @@ std::size_t Farthest(const std::vector<const BoardSample*>& samples,
                      const CameraModel& camera,
                      const MixedFit& mixed) {
   std::vector<MixedDifference> differences;
-  MixedMatrix information = MixedPriorInformation();
+  MixedMatrix information = MixedPriorInformation(mixed.shared_prior);
   MixedVector pull = MixedVector::Zero();  // the priors' own cancels at the fit
   for (const BoardSample* sample : samples) {
     const MixedDifference& d = differences.emplace_back(DifferenceOf(*sample, camera, mixed));

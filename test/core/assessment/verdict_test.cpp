@@ -46,6 +46,9 @@ TEST(VerdictOf, IsAsBadAsItsWorstCheck) {
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->held_out_mm = 12.1; }).grade, Grade::kBad);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->in_sample_mm = 0.5; }).grade, Grade::kBad);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->normal_deg = 0.8; }).grade, Grade::kLook);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->chessboard_turn_deg = 0.6; }).grade, Grade::kGood);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->chessboard_turn_deg = 0.8; }).grade, Grade::kLook);
+  EXPECT_EQ(JudgeWith([](Evidence* e) { e->chessboard_turn_deg = 2.1; }).grade, Grade::kBad);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->sigma_deg = 0.3; }).grade, Grade::kBad);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->sigma_mm = 5; }).grade, Grade::kLook);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->num_samples = 40; }).grade, Grade::kLook);

@@ -13,8 +13,8 @@
 namespace voqcal {
 
 /// Calls `work(i)` for each i below `num`, on as many threads as the machine has cores, but never
-/// more than `most_at_once`. What each
-/// call gives must depend on i alone and be stored by i: the result is then the same each time.
+/// more than `most_at_once`. What each call gives must depend on i alone and be stored by i: the
+/// result is then the same each time.
 /// @throws what the first call (by i) that throws does, after all have ended.
 template <typename Work>
 void ParallelFor(std::size_t num,

@@ -48,8 +48,7 @@ struct RigSimulationOptions {
 class RigSimulation {
  public:
   /// @throws std::invalid_argument if `options` or `board` have Problems(), or if a camera shares
-  /// no
-  ///     view with any lidar.
+  ///     no view with any lidar.
   RigSimulation(const RigSimulationOptions& options, const BoardSpec& board);
   ~RigSimulation();
 

@@ -18,8 +18,7 @@ class StopChecks {
  public:
   /// @param room  borrowed.
   /// @param T_room_lidar  where the lidar stands; the camera stands by options.T_camera_lidar in
-  /// the
-  ///     room's frame.
+  ///     the room's frame.
   StopChecks(const SimulationOptions& options,
              const BoardSpec& board,
              const CameraModel& camera,

@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -58,6 +59,7 @@ class SessionSceneReader {
 
 /// Calls `work` for each scene for which `is_wanted` says so, one a core at a time: it must not
 /// matter which comes first. Of a log that is damaged somewhere, the scenes before that are done.
+/// Scenes of the same sample and time, as logs have that were joined, count once: the first.
 /// @throws as SessionSceneReader, and what `work` throws.
 template <typename IsWanted, typename Work>
 void ForEachScene(const std::filesystem::path& samples_log,
@@ -65,6 +67,7 @@ void ForEachScene(const std::filesystem::path& samples_log,
                   const Work& work) {
   const std::size_t num_at_once = std::max(1U, std::thread::hardware_concurrency());
   SessionSceneReader reader(samples_log);
+  std::set<std::pair<std::int64_t, std::int64_t>> taken;  // id, utime
   bool is_at_end = false;
   while (!is_at_end) {
     std::vector<SessionScene> scenes;
@@ -73,7 +76,9 @@ void ForEachScene(const std::filesystem::path& samples_log,
       while (scenes.size() < num_at_once && !is_at_end) {
         std::optional<SessionScene> scene = reader.Next();
         is_at_end = !scene;
-        if (scene && is_wanted(*scene)) scenes.push_back(std::move(*scene));
+        if (!scene || !is_wanted(*scene)) continue;
+        if (!taken.emplace(scene->sample_id, scene->sweep.utime).second) continue;
+        scenes.push_back(*std::move(scene));
       }
     } catch (...) {
       damage = std::current_exception();

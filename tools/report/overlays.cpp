@@ -202,7 +202,9 @@ void WriteOverlays(const Rig& rig,
   const std::vector<BoardSample> all = run.SamplesAsChosen();
   for (const BoardSample& sample : all) samples[sample.id] = &sample;
   const auto is_kept = [&](const SessionScene& scene) {
-    return samples.count(scene.sample_id) != 0;  // others were discarded later
+    // Others were discarded later, or are of a log that was joined to this.
+    const auto sample = samples.find(scene.sample_id);
+    return sample != samples.end() && sample->second->utime == scene.sweep.utime;
   };
   ForEachScene(samples_log, is_kept, [&](const SessionScene& messages) {
     const cv::Mat image = FromMessage(messages.image);

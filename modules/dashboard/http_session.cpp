@@ -33,18 +33,21 @@ HttpResponse Plain(http::status status, const std::string& line) {
   return response;
 }
 
-/// Nothing of another server is loaded.
-std::string ContentPolicy(const std::string& styles) {
-  return "default-src 'none'; script-src 'self'; style-src " + styles +
-         "; img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
-         "frame-ancestors 'none'";
-}
+// Nothing of another server is loaded, and by a page that is all in one file nothing at all: its
+// address has the token in it.
+const std::string kSealed =
+    "default-src 'none'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'; ";
+const std::string kOwnPolicy = kSealed +
+                               "script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
+                               "connect-src 'self'";
+const std::string kOneFilePolicy = kSealed +
+                                   "script-src 'none'; style-src 'unsafe-inline'; img-src data:; "
+                                   "connect-src 'none'";
 
 HttpResponse Give(const std::string& name, const StaticFile& file) {
   HttpResponse response(http::status::ok, 11);
-  if (file.has_styles_in_it) {
-    response.set(kContentPolicy, ContentPolicy("'unsafe-inline'"));
-  }
+  if (file.is_one_file) response.set(kContentPolicy, kOneFilePolicy);
   response.set(http::field::content_type, file.content_type);
   if (file.is_download) {
     response.set(http::field::content_disposition, "attachment; filename=\"" + name + "\"");
@@ -108,7 +111,7 @@ HttpResponse Answer(const HttpRequest& request, const Hub& hub) {
   response.set("X-Content-Type-Options", "nosniff");
   response.set("Cross-Origin-Resource-Policy", "same-origin");
   if (response.find(kContentPolicy) == response.end()) {
-    response.set(kContentPolicy, ContentPolicy("'self'"));
+    response.set(kContentPolicy, kOwnPolicy);
   }
   response.keep_alive(false);
   response.prepare_payload();

@@ -15,8 +15,8 @@ namespace voqcal {
 struct StaticFile {
   std::string content_type;
   std::string bytes;
-  bool is_download = false;       ///< To be saved under its name, not shown.
-  bool has_styles_in_it = false;  ///< A page that is all in one file; scripts stay forbidden.
+  bool is_download = false;  ///< To be saved under its name, not shown.
+  bool is_one_file = false;  ///< A page with its styles and pictures: it may load and run nothing.
 };
 
 struct ServerOptions {

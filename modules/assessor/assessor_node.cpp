@@ -11,6 +11,7 @@
 #include "messaging/convert_result.hpp"
 #include "messaging/made_from.hpp"
 #include "messaging/session_views.hpp"
+#include "result/result_file.hpp"
 
 namespace voqcal {
 namespace {
@@ -62,7 +63,7 @@ ChosenSamples ChosenOf(const samples_t& samples, const extrinsic_averaged_t& ave
 /// A report of an earlier result, or of none, would be taken for one of this.
 void RemoveReport(const std::filesystem::path& session_folder) {
   std::error_code error;
-  for (const char* name : {"report.html", "result.json"}) {
+  for (const char* name : {kReportName, kResultJsonName, kNoResultName}) {
     std::filesystem::remove(session_folder / name, error);
   }
 }

@@ -2,6 +2,7 @@
 
 #include <ctime>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -14,6 +15,7 @@
 #include "messaging/convert_result.hpp"
 #include "messaging/made_from.hpp"
 #include "messaging/wall_clock.hpp"
+#include "result/result_file.hpp"
 #include "voqcal/command_t.hpp"
 
 namespace voqcal {
@@ -22,9 +24,6 @@ namespace {
 constexpr std::size_t kMaxEvents = 40;
 constexpr std::chrono::milliseconds kStepPeriod{50};  // a click must not seem to hang
 constexpr std::chrono::milliseconds kLookPeriod{500};
-// As the program "report" names them.
-constexpr char kReportPage[] = "report.html";
-constexpr char kNoResultPage[] = "no_result.html";
 // An image is shown with the board that was found in it, or without if that takes longer.
 constexpr std::chrono::milliseconds kBoardPatience{500};
 constexpr std::chrono::seconds kBoardsCome{2};
@@ -302,14 +301,14 @@ bool DashboardNode::IsFinishedAndJudged() const {
          IsMadeFrom(*samples_, *assessment_);
 }
 
+// Where there is no result, more may have been seen since it was last told.
 void DashboardNode::MakeReportIfWanted() {
   if (!is_report_wanted_ || !IsFinishedAndJudged() || report_maker_.IsAtWork()) return;
   is_report_wanted_ = false;
-  const std::string& sha256 = samples_->log_sha256;
-  if (report_sha256_ == sha256) return;
+  if (assessment_->problem.empty() && FindReport(kReportName)) return;
   std::error_code ignored;  // there may be none
-  std::filesystem::remove(session_folder_ / kNoResultPage, ignored);
-  tried_sha256_ = sha256;
+  std::filesystem::remove(session_folder_ / kNoResultName, ignored);
+  tried_sha256_ = samples_->log_sha256;
   if (!report_maker_.Start()) spdlog::warn("the program that makes the report cannot be run");
 }
 
@@ -325,25 +324,28 @@ void DashboardNode::ShowReport() {
 SessionReport DashboardNode::LookForReport() {
   if (!IsFinishedAndJudged()) return {};
   if (report_maker_.IsAtWork()) return {"making", ""};
-  const std::string& sha256 = samples_->log_sha256;
-  const bool has_result = assessment_->problem.empty();
-  const char* const name = has_result ? kReportPage : kNoResultPage;
-  if (report_sha256_ == sha256) return {"made", name};
-  report_sha256_.clear();
-  const bool is_tried = tried_sha256_ == sha256;
-  std::error_code ignored;
-  if (std::filesystem::exists(session_folder_ / name, ignored)) {
-    // A report names the samples that it is of; of what was seen instead there is one only if it
-    // was asked for.
-    report_file_.bytes = ReadWholeFile(session_folder_ / name);
-    const bool is_of_these =
-        has_result ? report_file_.bytes.find(sha256) != std::string::npos : is_tried;
-    if (is_of_these) {
-      report_sha256_ = sha256;
-      return {"made", name};
-    }
+  const char* const name = assessment_->problem.empty() ? kReportName : kNoResultName;
+  if (FindReport(name)) return {"made", name};
+  return {tried_sha256_ == samples_->log_sha256 ? "failed" : "", ""};
+}
+
+bool DashboardNode::FindReport(const std::string& name) {
+  const std::filesystem::path file = session_folder_ / name;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error) return false;
+  const auto written = std::filesystem::last_write_time(file, error);
+  if (error) return false;
+  const auto found = std::make_tuple(name, size, written, samples_->log_sha256);
+  if (found == read_) return is_read_of_samples_;
+  std::string page = ReadWholeFile(file);
+  read_ = found;
+  is_read_of_samples_ = page.find(samples_->log_sha256) != std::string::npos;
+  if (is_read_of_samples_) {
+    report_file_.bytes = std::move(page);
+    OfferFiles();
   }
-  return {is_tried ? "failed" : "", ""};
+  return is_read_of_samples_;
 }
 
 // A candidate may be chosen of a sample that was discarded since: then the samples as they came.

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "dashboard/page_state.hpp"
@@ -74,6 +75,9 @@ class DashboardNode : public Module {
   /// The report of the finished samples, whoever made it.
   void ShowReport();
   SessionReport LookForReport();
+  /// Whether there is such a page and it names these samples; it is `report_file_` then. A page
+  /// that has not changed since is not read again: it may be large.
+  bool FindReport(const std::string& name);
   std::vector<BoardSample> TakenSamples() const;
   std::optional<Eigen::Isometry3d> Extrinsic() const;
   std::string WorkingOn() const;
@@ -112,8 +116,10 @@ class DashboardNode : public Module {
   std::string exports_sha256_;                 ///< ...and of which samples they are.
   ReportMaker report_maker_;
   bool is_report_wanted_ = false;  ///< "finish" was clicked.
-  std::string tried_sha256_;       ///< Of which samples a report was begun last...
-  std::string report_sha256_;      ///< ...and of which there is one.
+  std::string tried_sha256_;       ///< Of which samples a report was begun last.
+  /// Of the report that was read last: name, size, time, and the samples that it should name...
+  std::tuple<std::string, std::uintmax_t, std::filesystem::file_time_type, std::string> read_;
+  bool is_read_of_samples_ = false;  ///< ...and whether it does.
   SessionReport report_;
   StaticFile report_file_;
 };

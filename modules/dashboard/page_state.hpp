@@ -49,8 +49,7 @@ std::string NoResultJson(const std::string& problem, const std::string& working_
 /// What there is to read of the samples that "finish" left.
 struct SessionReport {
   std::string state;  ///< "", "making", "made", "failed".
-  std::string
-      file;  ///< Its name, once made: "report.html", or "no_result.html" where there is none.
+  std::string file;   ///< Its name, once made: kReportName, or kNoResultName where there is none.
   bool operator==(const SessionReport& other) const {
     return state == other.state && file == other.file;
   }

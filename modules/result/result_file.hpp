@@ -9,8 +9,12 @@
 
 namespace voqcal {
 
-/// Name of the result in a session's folder.
+/// Names in a session's folder: the result, what it is for programs and for a browser, and the page
+/// of what was seen where there is no result.
 inline constexpr char kResultName[] = "extrinsic.yaml";
+inline constexpr char kResultJsonName[] = "result.json";
+inline constexpr char kReportName[] = "report.html";
+inline constexpr char kNoResultName[] = "no_result.html";
 
 /// Which bytes the result is made from. No wall-clock time: the file is the same each run.
 struct MadeFrom {

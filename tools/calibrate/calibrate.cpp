@@ -17,6 +17,7 @@
 #include "files/atomic_file.hpp"
 #include "messaging/log.hpp"
 #include "report/write_report.hpp"
+#include "result/result_file.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_doubts.hpp"
 

@@ -14,6 +14,7 @@
 #include "messaging/bus.hpp"
 #include "messaging/made_from.hpp"
 #include "messaging/wall_clock.hpp"
+#include "result/result_file.hpp"
 #include "rig/rig.hpp"
 #include "voqcal/assessment_t.hpp"
 #include "voqcal/command_t.hpp"
@@ -113,7 +114,7 @@ void SendAndTellOutcome(const CommandArgs& args, const Rig& rig, Bus* bus) {
 
 /// What the live modules found, as a page to look at.
 void WriteReport(const CommandArgs& args) {
-  const std::string result = (args.session / "extrinsic.yaml").string();
+  const std::string result = (args.session / kResultName).string();
   std::printf("result   %s\n", result.c_str());
   std::fflush(stdout);
   const std::string problem = RunProgram(
@@ -123,7 +124,7 @@ void WriteReport(const CommandArgs& args) {
 
 /// Where there is no result, a page of what was seen instead.
 void WriteWhatWasSeen(const CommandArgs& args) {
-  const std::filesystem::path page = args.session / "no_result.html";
+  const std::filesystem::path page = args.session / kNoResultName;
   std::filesystem::remove(page);
   RunProgram({FileBesidePrograms("bin/report"), args.session.string(), "--rig", args.rig.string()});
   if (std::filesystem::exists(page)) std::printf("what was seen: %s\n", page.c_str());

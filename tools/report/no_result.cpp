@@ -12,6 +12,7 @@
 #include "common/run_program.hpp"
 #include "common/scratch_folder.hpp"
 #include "files/atomic_file.hpp"
+#include "files/sha256.hpp"
 #include "images/jpeg.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_image.hpp"
@@ -19,6 +20,7 @@
 #include "messaging/session_misses.hpp"
 #include "messaging/session_scenes.hpp"
 #include "report/seen.hpp"
+#include "result/result_file.hpp"
 
 namespace voqcal {
 namespace {
@@ -157,11 +159,14 @@ std::string WriteNoResult(const Rig& rig,
       misses.trouble.empty() || problem.find(misses.trouble) != std::string::npos
           ? ""
           : "\n" + misses.trouble;
+  const std::filesystem::path log = session / kSamplesLogName;
+  const std::string log_sha256 = std::filesystem::exists(log) ? Sha256OfFile(log) : "";
   const Json json = {{"rig", rig.name},
                      {"problem", problem + trouble},
                      {"counts", Counts(misses.counts)},
                      {"misses", Misses(misses, rig, &pictures)},
-                     {"samples", Samples(rig, samples, session, &pictures)}};
+                     {"samples", Samples(rig, samples, session, &pictures)},
+                     {"log_sha256", log_sha256}};
   const std::filesystem::path file = scratch.path() / "no_result.json";
   WriteFileAtomically(file, json.dump(1, ' ', false, Json::error_handler_t::replace));
   return RunProgram({ScriptOfTools("report/make_report.py"),

@@ -9,9 +9,6 @@
 
 namespace voqcal {
 
-/// Name in the folder where a result was asked for.
-inline constexpr char kNoResultName[] = "no_result.html";
-
 /// Writes no_result.html: why there is no calibration, what was seen instead, each frame with its
 /// reason, and what to do.
 ///

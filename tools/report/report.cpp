@@ -12,6 +12,7 @@
 #include "messaging/session_scenes.hpp"
 #include "report/no_result.hpp"
 #include "report/write_report.hpp"
+#include "result/result_file.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {

@@ -6,6 +6,7 @@
 #include "messaging/session_scenes.hpp"
 #include "report/overlays.hpp"
 #include "report/result_json.hpp"
+#include "result/result_file.hpp"
 
 namespace voqcal {
 

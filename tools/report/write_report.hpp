@@ -8,10 +8,6 @@
 
 namespace voqcal {
 
-/// Names in the folder of a result.
-inline constexpr char kResultJsonName[] = "result.json";
-inline constexpr char kReportName[] = "report.html";
-
 /// Writes result.json and, beside it, report.html made of it and of the scenes in samples.lcm.
 ///
 /// @param run     finished, with a result.

@@ -20,6 +20,7 @@
 namespace voqcal {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -203,7 +204,10 @@ TEST_F(DashboardNodeTest, MakesAndOffersTheReportOnceFinishWasClicked) {
   EXPECT_EQ(report["folder"], folder_.path().string());
   const auto page = Get("report.html");
   EXPECT_EQ(page.body(), "<p>of log's hash</p>\n");
-  EXPECT_THAT(std::string(page["Content-Security-Policy"]), HasSubstr("style-src 'unsafe-inline'"));
+  EXPECT_THAT(std::string(page["Content-Security-Policy"]),
+              AllOf(HasSubstr("script-src 'none'"),
+                    HasSubstr("connect-src 'none'"),
+                    HasSubstr("style-src 'unsafe-inline'")));
   EXPECT_EQ(Get("extrinsic.yaml").result_int(), 200U);
   SendSamples(test::NoisySamples(9), 9, "another hash");
   EXPECT_EQ(ReportWhenDone()["state"], "");
@@ -221,15 +225,32 @@ TEST_F(DashboardNodeTest, OffersAReportThatAnotherMade) {
 }
 
 TEST_F(DashboardNodeTest, OffersWhatWasSeenWhereThereIsNoResult) {
-  folder_.Write("make_report.sh",
-                "echo seen > '" + (folder_.path() / "no_result.html").string() + "'; exit 1");
+  folder_.Write(
+      "make_report.sh",
+      "echo \"$$ of log's hash\" > '" + (folder_.path() / "no_result.html").string() + "'; exit 1");
   SendSamples(test::NoisySamples(2), 2);
   Calibrate();
   ClickFinish();
   const Json report = ReportWhenDone();
   EXPECT_EQ(report["state"], "made");
   EXPECT_EQ(report["file"], "no_result.html");
-  EXPECT_EQ(Get("no_result.html").body(), "seen\n");
+  const std::string first = Get("no_result.html").body();
+  EXPECT_THAT(first, HasSubstr("log's hash"));
+  ClickFinish();  // more may have been seen
+  EXPECT_EQ(ReportWhenDone()["state"], "made");
+  EXPECT_NE(Get("no_result.html").body(), first);
+}
+
+TEST_F(DashboardNodeTest, OffersWhatAnotherToldOfWhatWasSeen) {
+  SendSamples(test::NoisySamples(2), 2);
+  Calibrate();
+  folder_.Write("no_result.html", "of earlier samples");
+  EXPECT_EQ(ReportWhenDone()["state"], "");
+  folder_.Write("no_result.html", "of log's hash");
+  EXPECT_EQ(ReportWhenDone()["file"], "no_result.html");
+  folder_.Write("no_result.html", "again of log's hash");
+  EXPECT_EQ(ReportWhenDone()["file"], "no_result.html");
+  EXPECT_EQ(Get("no_result.html").body(), "again of log's hash");
 }
 
 TEST_F(DashboardNodeTest, SaysThatNoReportCouldBeMade) {

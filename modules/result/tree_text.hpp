@@ -20,13 +20,17 @@ const std::vector<std::string>& TreeFormats();
 /// - urdf: a whole robot: a link for each sensor, and a fixed joint from the reference to each.
 /// - bot_frames: the coordinate_frames block; each frame is relative to the reference.
 /// - kalibr: a camchain.yaml of the cameras; T_cn_cnm1 takes the coordinates of the camera before
-/// to
-///   the camera's, T_cam_lidar those of the first lidar.
+///   to the camera's, T_cam_lidar those of the first lidar.
 ///
 /// @param cameras  lenses by the cameras' names, for formats that have one.
 /// @throws std::invalid_argument with one line that lists the formats, if `format` is none of them.
 std::string TreeText(const std::string& format,
                      const SensorTree& tree,
                      const std::map<std::string, CameraModel>& cameras);
+
+/// The cameras of the tree whose lens a camchain goes without: it is not among `cameras`, or Kalibr
+/// has no such lens.
+std::vector<std::string> CamerasWithoutKalibrLens(
+    const SensorTree& tree, const std::map<std::string, CameraModel>& cameras);
 
 }  // namespace voqcal

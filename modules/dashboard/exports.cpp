@@ -32,7 +32,7 @@ std::map<std::string, StaticFile> ExportsOf(const std::filesystem::path& result_
   }
   std::map<std::string, StaticFile> exports;
   ExportedExtrinsic extrinsic;
-  extrinsic.T_camera_lidar = ExtrinsicOf(text, result_file.string());
+  extrinsic.T_child_parent = ExtrinsicOf(text, result_file.string());
   extrinsic.camera = camera;
   exports["extrinsic.yaml"] = {kText, text, true};
   for (const std::string& format : ExportFormats()) {

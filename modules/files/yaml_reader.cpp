@@ -307,10 +307,13 @@ void YamlSection::PassOver(const std::string& key, const std::string& instead) {
   const auto entry = entries_.find(key);
   if (entry == entries_.end()) return;
   entry->second.is_read = true;
-  const int line = entry->second.line;
-  document_->remarks_.emplace(line,
-                              document_->name_ + ":" + std::to_string(line) + ": " + PathOf(key) +
-                                  " is no longer used, see " + PathOf(instead));
+  AddRemark(key, "is no longer used, see " + PathOf(instead));
+}
+
+void YamlSection::AddRemark(const std::string& key, const std::string& text) {
+  const int line = LineOf(key);
+  document_->remarks_.emplace(
+      line, document_->name_ + ":" + std::to_string(line) + ": " + PathOf(key) + " " + text);
 }
 
 void YamlSection::RefuseUnknownKeys() {

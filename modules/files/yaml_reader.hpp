@@ -88,6 +88,9 @@ class YamlSection {
   /// @param instead  the key of this section that does now what it was there for.
   void PassOver(const std::string& key, const std::string& instead);
 
+  /// A remark at the key's value.
+  void AddRemark(const std::string& key, const std::string& text);
+
   /// True if every required key was given with a value of its type: checks of the whole make sense.
   bool IsComplete() const { return is_complete_; }
 

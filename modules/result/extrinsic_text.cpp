@@ -64,7 +64,7 @@ std::string PointText(const Eigen::Vector3d& point) {
 /// The lines that every format carries as comments.
 std::vector<std::string> Explanation(const ExportedExtrinsic& extrinsic, const std::string& what) {
   const Eigen::Vector3d p_camera_m(0.5, 0.25, 5.0);
-  const Eigen::Vector3d p_lidar_m = extrinsic.T_camera_lidar.inverse() * p_camera_m;
+  const Eigen::Vector3d p_lidar_m = extrinsic.T_child_parent.inverse() * p_camera_m;
   std::string example = "Example: p_" + extrinsic.parent + " = " + PointText(p_lidar_m) +
                         " m is p_" + extrinsic.child + " = " + PointText(p_camera_m) + " m";
   if (extrinsic.camera) {
@@ -98,14 +98,14 @@ std::string ProjectionLine(const ExportedExtrinsic& extrinsic, const std::string
 }
 
 std::string Ros1Command(const ExportedExtrinsic& extrinsic) {
-  const Eigen::Isometry3d T_lidar_camera = extrinsic.T_camera_lidar.inverse();
+  const Eigen::Isometry3d T_lidar_camera = extrinsic.T_child_parent.inverse();
   const Eigen::Vector3d t = T_lidar_camera.translation();
   return "rosrun tf2_ros static_transform_publisher " + Join(t, " ") + " " +
          Join(QuaternionXyzw(T_lidar_camera), " ") + " " + extrinsic.parent + " " + extrinsic.child;
 }
 
 std::string Ros2Command(const ExportedExtrinsic& extrinsic) {
-  const Eigen::Isometry3d T_lidar_camera = extrinsic.T_camera_lidar.inverse();
+  const Eigen::Isometry3d T_lidar_camera = extrinsic.T_child_parent.inverse();
   const Eigen::Vector3d t = T_lidar_camera.translation();
   const Eigen::Vector4d q = QuaternionXyzw(T_lidar_camera);
   const std::pair<const char*, double> values[] = {{"x", t[0]},
@@ -136,7 +136,7 @@ std::string RosText(const ExportedExtrinsic& extrinsic) {
 }
 
 std::string UrdfText(const ExportedExtrinsic& extrinsic) {
-  const Eigen::Isometry3d T_lidar_camera = extrinsic.T_camera_lidar.inverse();
+  const Eigen::Isometry3d T_lidar_camera = extrinsic.T_child_parent.inverse();
   const Eigen::Vector3d t = T_lidar_camera.translation();
   const std::string what = PoseLine(extrinsic) + " rpy turns about the parent's fixed x, y, z.";
   std::string text = "<!--\n";
@@ -155,7 +155,7 @@ std::string BotFramesText(const ExportedExtrinsic& extrinsic) {
 
 std::string KalibrText(const ExportedExtrinsic& extrinsic) {
   return Comments(extrinsic, ProjectionLine(extrinsic, "T_cam_lidar")) + "cam0:\n  T_cam_lidar:\n" +
-         ExactRows(extrinsic.T_camera_lidar.matrix(), "  ") +
+         ExactRows(extrinsic.T_child_parent.matrix(), "  ") +
          (extrinsic.camera ? KalibrLens(*extrinsic.camera) : "");
 }
 
@@ -185,7 +185,7 @@ std::string OpencvLens(const CameraModel& camera) {
 }
 
 std::string OpencvText(const ExportedExtrinsic& extrinsic) {
-  const Eigen::Isometry3d& T = extrinsic.T_camera_lidar;
+  const Eigen::Isometry3d& T = extrinsic.T_child_parent;
   const Eigen::Vector3d t = T.translation();
   const std::string what = ProjectionLine(extrinsic, "T_camera_lidar") +
                            " rvec and tvec say the same, for cv::projectPoints of lidar points.";
@@ -199,7 +199,7 @@ std::string AutowareText(const ExportedExtrinsic& extrinsic) {
   // REP 103: a body frame is x forward, y left, z up. Its axes in the optical frame, as columns.
   Eigen::Isometry3d T_camera_link = Eigen::Isometry3d::Identity();
   T_camera_link.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  const Eigen::Isometry3d T_lidar_link = extrinsic.T_camera_lidar.inverse() * T_camera_link;
+  const Eigen::Isometry3d T_lidar_link = extrinsic.T_child_parent.inverse() * T_camera_link;
   const Eigen::Vector3d t = T_lidar_link.translation();
   const Eigen::Vector3d rpy = RollPitchYaw(T_lidar_link.linear());
   const std::string link = extrinsic.child + "/camera_link";
@@ -222,8 +222,8 @@ std::string MrcalText(const ExportedExtrinsic& extrinsic) {
   intrinsics.insert(
       intrinsics.end(), camera.distortion.begin(), camera.distortion.begin() + num_distortion);
   Vector6d rt_camera_lidar;
-  rt_camera_lidar << RotationVector(extrinsic.T_camera_lidar),
-      extrinsic.T_camera_lidar.translation();
+  rt_camera_lidar << RotationVector(extrinsic.T_child_parent),
+      extrinsic.T_child_parent.translation();
   const std::string what =
       ProjectionLine(extrinsic, "rt_fromref") + " mrcal's reference frame is the parent.";
   return Comments(extrinsic, what) + "{\n    'lensmodel': 'LENSMODEL_OPENCV" +
@@ -254,7 +254,7 @@ const std::vector<std::pair<std::string, Formatter>>& Formatters() {
 // libbot2, bot2-frames: quaternions are w x y z, and a frame's transform takes its coordinates to
 // those of the frame that it is relative to.
 std::string BotFrame(const ExportedExtrinsic& extrinsic) {
-  const Eigen::Isometry3d T_lidar_camera = extrinsic.T_camera_lidar.inverse();
+  const Eigen::Isometry3d T_lidar_camera = extrinsic.T_child_parent.inverse();
   const Eigen::Vector3d t = T_lidar_camera.translation();
   const Eigen::Vector4d q = QuaternionXyzw(T_lidar_camera);
   const Eigen::Vector4d q_wxyz(q[3], q[0], q[1], q[2]);

@@ -13,8 +13,9 @@ namespace voqcal {
 /// What an exported transform is between. The parent is the lidar and the child the camera, unless
 /// the kinds say otherwise.
 struct ExportedExtrinsic {
-  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();  ///< From parent to child.
-  std::string parent = "lidar";                                      ///< Name of the lidar's frame.
+  /// p_child = T_child_parent * p_parent, metres.
+  Eigen::Isometry3d T_child_parent = Eigen::Isometry3d::Identity();
+  std::string parent = "lidar";  ///< Name of the lidar's frame.
   std::string child = "camera";  ///< Name of the camera's optical frame.
   std::string parent_kind = "the lidar";
   std::string child_kind = "the camera's optical frame: x right, y down, z forward";

@@ -57,8 +57,19 @@ std::string WorstOf(const Verdict& verdict) {
   return ToString(verdict.grade) + names;
 }
 
+/// Pairs that are bad by themselves, and that no other tests: what hangs on one is as bad as it.
+std::string BadPairs(const RigExtrinsics& result) {
+  std::string names;
+  for (const CalibratedPair& pair : result.pairs) {
+    const bool is_bad = pair.HasSession() && pair.verdict.grade == Grade::kBad;
+    if (!is_bad || IsLeftOut(result, pair) || ClosureOf(result, pair) != nullptr) continue;
+    names += (names.empty() ? "" : ", ") + pair.Name();
+  }
+  return names;
+}
+
 VerdictCheck CheckPairs(const RigExtrinsics& result) {
-  VerdictCheck check = {"Pairs", Grade::kGood, ""};
+  VerdictCheck check = {"Pairs", BadPairs(result).empty() ? Grade::kGood : Grade::kBad, ""};
   std::string wanting;
   int num_used = 0;
   for (const CalibratedPair& pair : result.pairs) {
@@ -66,10 +77,7 @@ VerdictCheck CheckPairs(const RigExtrinsics& result) {
     ++num_used;
     if (!pair.HasSession() || pair.verdict.grade == Grade::kGood) continue;
     wanting += (wanting.empty() ? "" : "; ") + pair.Name() + " (" + WorstOf(pair.verdict) + ")";
-    // What hangs on this pair alone is as bad as it.
-    const bool is_alone = ClosureOf(result, pair) == nullptr;
-    check.grade = std::max(
-        check.grade, is_alone && pair.verdict.grade == Grade::kBad ? Grade::kBad : Grade::kLook);
+    check.grade = std::max(check.grade, Grade::kLook);
   }
   check.text = std::to_string(num_used) + " of " + std::to_string(result.pairs.size()) +
                " pairs join the rig.";
@@ -254,8 +262,10 @@ Verdict VerdictOf(const RigExtrinsics& result) {
   verdict.headline = verdict.grade == Grade::kGood   ? "Good."
                      : verdict.grade == Grade::kLook ? "Usable; what is marked below would make it "
                                                        "better."
-                                                     : "Do not use it: what hangs on a bad pair is "
-                                                       "as bad.";
+                                                     : "Do not use it: " + BadPairs(result) +
+                                                           ", bad by itself and tested by no "
+                                                           "other, is part of it; the others hold "
+                                                           "as told below.";
   return verdict;
 }
 

@@ -27,7 +27,7 @@ struct CalibratedPair {
   std::string problem;
 
   bool HasSession() const { return !folder.empty(); }
-  std::string Name() const { return extrinsic.from + "_" + extrinsic.to; }
+  std::string Name() const { return PairName(extrinsic.from, extrinsic.to); }
 };
 
 /// Everything that rig_extrinsics.yaml says.

@@ -21,7 +21,7 @@ std::vector<ExportedExtrinsic> EdgesOf(const SensorTree& tree, const Cameras& ca
   for (const SensorTree::Sensor& sensor : tree.sensors) {
     if (sensor.name == tree.reference) continue;
     ExportedExtrinsic edge;
-    edge.T_camera_lidar = sensor.T_reference_sensor.inverse();
+    edge.T_child_parent = sensor.T_reference_sensor.inverse();
     edge.parent = tree.reference;
     edge.parent_kind = KindOf(tree.sensors.front());
     edge.child = sensor.name;
@@ -117,6 +117,16 @@ std::string TreeText(const std::string& format, const SensorTree& tree, const Ca
   for (const std::string& name : TreeFormats()) known += (known.empty() ? "" : ", ") + name;
   throw std::invalid_argument("no format '" + format + "' of a whole rig; there are: " + known +
                               " (each pair's own folder can be exported too)");
+}
+
+std::vector<std::string> CamerasWithoutKalibrLens(const SensorTree& tree, const Cameras& cameras) {
+  std::vector<std::string> names;
+  for (const SensorTree::Sensor& sensor : tree.sensors) {
+    if (sensor.is_lidar) continue;
+    const auto camera = cameras.find(sensor.name);
+    if (camera == cameras.end() || KalibrLens(camera->second).empty()) names.push_back(sensor.name);
+  }
+  return names;
 }
 
 }  // namespace voqcal

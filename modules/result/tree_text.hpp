@@ -28,4 +28,9 @@ std::string TreeText(const std::string& format,
                      const SensorTree& tree,
                      const std::map<std::string, CameraModel>& cameras);
 
+/// The cameras of the tree whose lens a camchain goes without: it is not among `cameras`, or Kalibr
+/// has no such lens.
+std::vector<std::string> CamerasWithoutKalibrLens(
+    const SensorTree& tree, const std::map<std::string, CameraModel>& cameras);
+
 }  // namespace voqcal

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/sensor_network/sensor_pair.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -86,7 +88,7 @@ void ReadChannels(YamlSection* top,
                   Channels* channels) {
   YamlSection shared = top->Section("channels");
   ChannelNames names(prefix);
-  const std::string ending_of_pair = "_" + pair.lidar->name + "_" + pair.camera->name;
+  const std::string ending_of_pair = "_" + PairName(pair.lidar->name, pair.camera->name);
   for (const ChannelKey& each : kKeys) {
     std::string& name = channels->*each.name;
     shared.Read(each.key, &name);

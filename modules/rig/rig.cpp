@@ -74,8 +74,16 @@ Rig Load(const std::filesystem::path& path, LensInRig* lens) {
   ReadRigSections(place, &document, &rig, lens);
   document.ThrowIfWrong();
   rig.remarks = document.Remarks();
+  return rig;
+}
+
+Rig Told(Rig rig) {
   for (const std::string& remark : rig.remarks) spdlog::warn(remark);
   return rig;
+}
+
+void AddIfNew(const std::string& line, std::vector<std::string>* lines) {
+  if (std::find(lines->begin(), lines->end(), line) == lines->end()) lines->push_back(line);
 }
 
 bool Has(const std::vector<std::string>& names, const std::string& name) {
@@ -113,9 +121,9 @@ RigPlace PlaceOfRig(const std::filesystem::path& path) {
   return place;
 }
 
-Rig LoadRig(const std::filesystem::path& path) { return Load(path, nullptr); }
+Rig LoadRig(const std::filesystem::path& path) { return Told(Load(path, nullptr)); }
 
-Rig LoadRig(const std::filesystem::path& path, LensInRig* lens) { return Load(path, lens); }
+Rig LoadRig(const std::filesystem::path& path, LensInRig* lens) { return Told(Load(path, lens)); }
 
 std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path) {
   const RigPlace place = PlaceOfRig(path);
@@ -133,17 +141,17 @@ std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path)
 
 std::vector<Rig> LoadPairs(const std::filesystem::path& path) {
   std::vector<Rig> rigs;
+  std::vector<std::string> remarks;  // of one file, whichever pair is read
   std::vector<std::string> problems;
   for (const std::filesystem::path& each : PairsOfRig(path)) {
     try {
-      rigs.push_back(LoadRig(each));
+      rigs.push_back(Load(each, nullptr));
+      for (const std::string& remark : rigs.back().remarks) AddIfNew(remark, &remarks);
     } catch (const std::runtime_error& error) {
-      for (const std::string& line : LinesOf(error.what())) {
-        const bool is_told = std::find(problems.begin(), problems.end(), line) != problems.end();
-        if (!is_told) problems.push_back(line);
-      }
+      for (const std::string& line : LinesOf(error.what())) AddIfNew(line, &problems);
     }
   }
+  for (const std::string& remark : remarks) spdlog::warn(remark);
   std::string text;
   for (const std::string& line : problems) text += (text.empty() ? "" : "\n") + line;
   if (!problems.empty()) throw std::runtime_error(text);

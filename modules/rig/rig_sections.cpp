@@ -8,6 +8,7 @@
 
 #include "core/camera/named_lens.hpp"
 #include "core/camera_detection/calibration_target.hpp"
+#include "core/sensor_network/sensor_pair.hpp"
 #include "files/transform_yaml.hpp"
 #include "rig/assessor_section.hpp"
 #include "rig/channel_section.hpp"
@@ -354,15 +355,32 @@ void ReadMounts(const PairOfEntries& pair, Rig* rig) {
                         ".T_rig_lidar_guess and cameras." + pair.camera->name +
                         ".T_rig_camera_guess instead");
   }
-  if (T_rig_lidar && T_rig_camera)
+  if (T_rig_lidar && T_rig_camera) {
     rig->T_camera_lidar_guess = T_rig_camera->inverse() * *T_rig_lidar;
+  } else if (T_rig_lidar) {
+    pair.lidar->section.AddRemark(
+        "T_rig_lidar_guess",
+        "is not used with " + pair.camera->name + ", which has no T_rig_camera_guess");
+  } else if (T_rig_camera) {
+    pair.camera->section.AddRemark(
+        "T_rig_camera_guess",
+        "is not used with " + pair.lidar->name + ", which has no T_rig_lidar_guess");
+  }
 }
 
-/// Where a detector's options are: the sensor's own, or else those that all of its kind share.
-YamlSection* HomeOf(const char* key, YamlSection* sensor, YamlSection* top) {
-  sensor->Section(key);  // both may have it
-  top->Section(key);
-  return sensor->Has(key) ? sensor : top;
+/// A detector's options: the sensor's own, or else those that all of its kind share. Both are
+/// checked.
+template <typename Options>
+void ReadDetector(void (*read)(YamlSection*, Options*),
+                  const char* key,
+                  YamlSection* sensor,
+                  YamlSection* top,
+                  Options* options) {
+  Options own = *options;
+  read(top, options);
+  if (sensor == top) return;
+  read(sensor, &own);
+  if (sensor->Has(key)) *options = own;
 }
 
 /// A simulated world has one of each: two drivers that simulate two pairs would not show one board.
@@ -390,9 +408,10 @@ void ReadSensors(const std::filesystem::path& rig_path,
   ReadCamera(camera, &rig->camera, &rig->T_camera_lidar_guess, lens);
   ReadLidarDriver(lidar, rig_path, &rig->lidar_driver, &rig->lidar_sensor);
   ReadCameraDriver(camera, rig_path, &rig->camera_driver);
-  ReadLidarBoardDetector(HomeOf("lidar_board_detector", lidar, top), &rig->lidar_board_detector);
-  ReadCameraBoardDetector(HomeOf("camera_board_detector", camera, top),
-                          &rig->camera_board_detector);
+  ReadDetector(
+      ReadLidarBoardDetector, "lidar_board_detector", lidar, top, &rig->lidar_board_detector);
+  ReadDetector(
+      ReadCameraBoardDetector, "camera_board_detector", camera, top, &rig->camera_board_detector);
 }
 
 /// Where the path names none, the file may: a session's copy is of one pair.
@@ -415,7 +434,7 @@ void ReadNamedSensors(const RigPlace& place,
   rig->lidar_name = pair.lidar->name;
   rig->camera_name = pair.camera->name;
   const bool is_one_of_several = entries->lidars.size() + entries->cameras.size() > 2;
-  if (is_one_of_several) rig->name += "_" + rig->lidar_name + "_" + rig->camera_name;
+  if (is_one_of_several) rig->name += "_" + PairName(rig->lidar_name, rig->camera_name);
   ReadChannels(top, channel_prefix, pair, entries, &rig->channels);
   ReadSensors(place.file, top, &pair.lidar->section, &pair.camera->section, rig, lens);
   ReadMounts(pair, rig);

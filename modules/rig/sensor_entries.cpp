@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <set>
 #include <stdexcept>
 
+#include "core/sensor_network/sensor_pair.hpp"
 #include "files/nearest_word.hpp"
 
 namespace voqcal {
@@ -12,9 +14,18 @@ namespace {
 
 /// Names are part of channels, folders and frames.
 bool IsName(const std::string& name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_';
-  });
+  return !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) != 0 &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) {
+           return std::isalnum(c) != 0 || c == '_';
+         });
+}
+
+/// What YAML reads as a truth value or as nothing, where it stands without quotes.
+bool IsWordOfYaml(std::string name) {
+  static const std::set<std::string> kWords = {
+      "y", "n", "yes", "no", "on", "off", "true", "false", "null"};
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return kWords.count(name) != 0;
 }
 
 std::vector<SensorEntry> ReadKind(YamlSection* top,
@@ -24,13 +35,33 @@ std::vector<SensorEntry> ReadKind(YamlSection* top,
   YamlSection section = top->Section(kind);
   if (section.keys().empty()) top->AddError(kind, "must have a section for each, under its name");
   for (const std::string& name : section.keys()) {
-    if (!IsName(name)) section.AddError(name, "must be named by letters, digits and _ alone");
+    if (!IsName(name)) {
+      section.AddError(name, "must be named by a letter, then letters, digits and _ alone");
+    } else if (IsWordOfYaml(name)) {
+      section.AddError(name, "must be named otherwise: YAML has a meaning for that word");
+    }
     if (!taken->insert(name).second) {
       section.AddError(name, "must be named unlike every other sensor");
     }
     entries.push_back({name, section.Section(name)});
   }
   return entries;
+}
+
+/// Pairs go by their names: those of two must not be the same.
+void RefuseSameNames(const SensorEntries& entries, YamlSection* top) {
+  std::map<std::string, std::string> words;  // by name
+  for (const SensorEntry& lidar : entries.lidars) {
+    for (const SensorEntry& camera : entries.cameras) {
+      const std::string name = PairName(lidar.name, camera.name);
+      const std::string pair = lidar.name + " with " + camera.name;
+      const auto [same, is_new] = words.emplace(name, pair);
+      if (is_new) continue;
+      top->AddError("cameras",
+                    "must not make pairs of one name: " + same->second + " and " + pair +
+                        " are both " + name);
+    }
+  }
 }
 
 std::vector<std::string> NamesOf(const std::vector<SensorEntry>& entries) {
@@ -79,6 +110,7 @@ SensorEntries ReadSensorEntries(YamlSection* top) {
   std::set<std::string> taken;
   entries.lidars = ReadKind(top, "lidars", &taken);
   entries.cameras = ReadKind(top, "cameras", &taken);
+  RefuseSameNames(entries, top);
   const auto refuse = [top](const char* key, const std::string& kind) {
     if (top->Has(key)) {
       top->AddError(key,

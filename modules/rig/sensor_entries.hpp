@@ -23,8 +23,8 @@ struct SensorEntries {
   RigSensors Names() const;
 };
 
-/// Names that are none, a sensor twice, and the sections of a file of one lidar and one camera
-/// beside them become errors of the document.
+/// Names that are none, a sensor twice, two pairs of one name, and the sections of a file of one
+/// lidar and one camera beside them become errors of the document.
 SensorEntries ReadSensorEntries(YamlSection* top);
 
 /// @throws std::runtime_error with one line if `place` names a sensor that is none of these.

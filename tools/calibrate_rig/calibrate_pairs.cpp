@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <numeric>
 #include <optional>
 #include <sstream>
+#include <string>
+#include <thread>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -104,12 +107,27 @@ BoardsBySensor Detect(const std::vector<Detection>& detections, const std::files
   return boards;
 }
 
-/// Pairs: each keeps some seconds of sweeps and images.
+/// Memory that can be had without swapping: the page cache gives way.
+double AvailableBytes() {
+  std::ifstream meminfo("/proc/meminfo");
+  for (std::string line; std::getline(meminfo, line);) {
+    std::istringstream words(line);
+    std::string key;
+    double kilobytes = 0.0;
+    if (words >> key >> kilobytes && key == "MemAvailable:") return 1024 * kilobytes;
+  }
+  return static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) *
+         static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+/// Pairs: each keeps some seconds of sweeps and images, and at its end works on a decoded scene a
+/// core.
 std::size_t MostAtOnce() {
-  constexpr double kBytesOfPair = 1e9;
-  const double free_bytes =
-      static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  return static_cast<std::size_t>(std::max(1.0, free_bytes / kBytesOfPair));
+  constexpr double kBytesOfFrames = 1e9;
+  constexpr double kBytesOfScene = 1e8;  // an image of 8 MP with its gradients, a sweep
+  const double bytes_of_pair =
+      kBytesOfFrames + kBytesOfScene * std::max(1U, std::thread::hardware_concurrency());
+  return static_cast<std::size_t>(std::max(1.0, AvailableBytes() / bytes_of_pair));
 }
 
 /// A pose of the board in a session, as its camera saw it.
@@ -121,6 +139,7 @@ struct SeenBoard {
 /// A pair, and what its camera saw.
 struct Session {
   CalibratedPair pair;
+  bool use_log_times = false;  ///< For the boards' times.
   std::vector<SeenBoard> boards;
 };
 
@@ -141,6 +160,7 @@ Session Calibrate(const Rig& rig,
                   const BoardsOfPair& boards,
                   const RigFolders& folders) {
   Session calibrated;
+  calibrated.use_log_times = use_log_times;
   CalibratedPair& pair = calibrated.pair;
   pair.folder = FolderOf(rig);
   pair.extrinsic.from = rig.lidar_name;
@@ -205,12 +225,22 @@ std::optional<CalibratedPair> CalibrateCameras(const Rig& from,
                                                const std::vector<Rig>& rigs,
                                                const std::vector<Session>& sessions) {
   std::vector<CommonBoard> boards;
+  bool is_of_two_times = false;
   for (std::size_t i = 0; i < rigs.size(); ++i) {
     for (std::size_t j = 0; j < rigs.size(); ++j) {
       if (rigs[i].camera_name != from.camera_name || rigs[j].camera_name != to.camera_name)
         continue;
+      if (sessions[i].use_log_times != sessions[j].use_log_times) {  // clocks are judged by pair
+        is_of_two_times = true;
+        continue;
+      }
       AddCommon(sessions[i].boards, sessions[j].boards, from.sample_collector, &boards);
     }
+  }
+  if (is_of_two_times) {
+    spdlog::warn(
+        "{}: boards whose times are stamps are not compared with those whose times are the log's",
+        PairName(from.camera_name, to.camera_name));
   }
   const auto extrinsic = PairOfCameras(from.camera_name, to.camera_name, boards, to.camera);
   if (!extrinsic || !extrinsic->covariance.allFinite()) return std::nullopt;
@@ -240,7 +270,7 @@ void AddPairsOfCameras(const std::vector<Rig>& rigs,
 
 }  // namespace
 
-std::string FolderOf(const Rig& pair) { return pair.lidar_name + "_" + pair.camera_name; }
+std::string FolderOf(const Rig& pair) { return PairName(pair.lidar_name, pair.camera_name); }
 
 std::vector<CalibratedPair> CalibratePairs(const std::vector<Rig>& pairs,
                                            const std::filesystem::path& log,

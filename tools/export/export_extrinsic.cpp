@@ -49,17 +49,30 @@ std::string TextOfRig(const ExportArgs& args, const std::filesystem::path& file)
   }
   const SensorTree tree = ReadSensorTree(file);
   if (tree.is_to_be_mended) spdlog::warn(kDoNotUse, file.string());
-  return TreeText(args.format, tree, CamerasOf(args.rig));
+  const std::map<std::string, CameraModel> cameras = CamerasOf(args.rig);
+  if (args.rig && args.format == "kalibr") {
+    for (const std::string& name : CamerasWithoutKalibrLens(tree, cameras)) {
+      spdlog::warn(
+          "{}: the camchain has no lens of {}: {}",
+          args.rig->string(),
+          name,
+          cameras.count(name) == 0 ? "the rig file has no such camera" : "Kalibr has no such lens");
+    }
+  }
+  return TreeText(args.format, tree, cameras);
 }
 
 std::string TextOfPair(ExportArgs args) {
   for (const std::string& problem : args.extrinsic.Problems()) throw std::runtime_error(problem);
-  args.extrinsic.T_camera_lidar = ReadExtrinsic(args.result);
+  args.extrinsic.T_child_parent = ReadExtrinsic(args.result);
   const std::filesystem::path file = ResultFileAt(args.result);
   if (IsToBeMended(ReadWholeFile(file), file.string())) {
     spdlog::warn(kDoNotUse, file.string());
   }
   if (args.rig) args.extrinsic.camera = LoadRig(*args.rig).camera;
+  if (args.rig && args.format == "kalibr" && KalibrLens(*args.extrinsic.camera).empty()) {
+    spdlog::warn("{}: the camchain has no lens: Kalibr has no such lens", args.rig->string());
+  }
   return ExtrinsicText(args.format, args.extrinsic);
 }
 

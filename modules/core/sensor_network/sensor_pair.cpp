@@ -16,6 +16,8 @@ RelativePose::RelativePose(const Eigen::Isometry3d& T_reference_from,
       R_to_reference * Skew(T_reference_from.translation() - T_reference_to.translation());
 }
 
+std::string PairName(const std::string& from, const std::string& to) { return from + "_" + to; }
+
 SensorPair Reversed(const SensorPair& pair) {
   const RelativePose reversed(Eigen::Isometry3d::Identity(), pair.T_to_from);
   return {pair.to,

@@ -18,6 +18,10 @@ struct SensorPair {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
+/// What a pair is called wherever it needs a name: its folder, its channels, its lines.
+/// "front_left".
+std::string PairName(const std::string& from, const std::string& to);
+
 /// The same, seen from the other side.
 SensorPair Reversed(const SensorPair& pair);
 

@@ -11,7 +11,9 @@ namespace voqcal {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 Eigen::Isometry3d Shifted(double x_m, double yaw_rad) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -152,7 +154,9 @@ TEST(RigExtrinsics, ABadPairThatNothingElseTestsMakesTheRigBad) {
   alone.pairs[2].verdict.checks = {{"Number of poses", Grade::kBad, "Only 4."}};
   EXPECT_EQ(VerdictOf(alone).grade, Grade::kBad);
   EXPECT_THAT(Summary(alone),
-              HasSubstr("Not good by themselves: side_left (bad: Number of poses)"));
+              AllOf(StartsWith("verdict  Do not use it: side_left, bad by itself and tested by no "
+                               "other, is part of it; the others hold"),
+                    HasSubstr("Not good by themselves: side_left (bad: Number of poses)")));
 }
 
 TEST(RigExtrinsics, AContradictionIsSaid) {
@@ -167,9 +171,38 @@ TEST(RigExtrinsics, AContradictionIsSaid) {
 
 TEST(TreeText, NamesTheFormatsThatThereAre) {
   EXPECT_THROW(TreeText("opencv", SensorTree(), {}), std::invalid_argument);
-  for (const std::string& format : TreeFormats()) {
-    EXPECT_NO_THROW(TreeText(format, SensorTree(), {})) << format;
+}
+
+SensorTree Tree() {
+  SensorTree tree;
+  tree.rig = "truck";
+  tree.reference = "top";
+  for (const char* name : {"top", "side", "left", "right"}) {
+    const bool is_lidar = tree.sensors.size() < 2;
+    tree.sensors.push_back({name, is_lidar, T_top_sensor(name)});
   }
+  return tree;
+}
+
+TEST(TreeText, EveryFormatHasEverySensorThatItCanHave) {
+  for (const std::string& format : TreeFormats()) {
+    const std::string text = TreeText(format, Tree(), {});
+    for (const char* name : {"top", "left", "right"}) {
+      EXPECT_THAT(text, HasSubstr(name)) << format;
+    }
+    if (format != "kalibr") {
+      EXPECT_THAT(text, HasSubstr("side")) << format;
+    }
+  }
+}
+
+TEST(TreeText, CamerasWithoutALensInTheCamchainAreNamed) {
+  CameraModel known;
+  CameraModel unknown;  // a fifth coefficient, which Kalibr's radtan has not
+  unknown.distortion[4] = 0.1;
+  EXPECT_THAT(CamerasWithoutKalibrLens(Tree(), {}), ElementsAre("left", "right"));
+  EXPECT_THAT(CamerasWithoutKalibrLens(Tree(), {{"left", known}, {"right", unknown}}),
+              ElementsAre("right"));
 }
 
 }  // namespace

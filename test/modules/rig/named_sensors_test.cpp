@@ -1,8 +1,12 @@
 // Rig files that have their sensors by name.
 #include <algorithm>
+#include <memory>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 #include "rig/rig.hpp"
 #include "support/matchers.hpp"
@@ -116,6 +120,26 @@ TEST(NamedSensors, WhereTheyAreOnTheRigTellsWhereTheyAreToEachOther) {
   EXPECT_TRUE(guess->translation().isApprox(Eigen::Vector3d(-1, 0, 1)));
 }
 
+TEST(NamedSensors, AGuessWithoutThatOfTheOtherIsRemarkedUpon) {
+  const std::string guess =
+      "{quaternion_xyzw: [0, 0, 0, 1], translation_m: [1, 0, 2]}, lidar_driver: {rate_hz: 20}";
+  std::string text = Truck();
+  text.replace(
+      text.find("\n    lidar_driver: {rate_hz: 20}"), 32, " {T_rig_lidar_guess: " + guess + "}");
+  const Rig rig = Load(text, "#front,left");
+  EXPECT_FALSE(rig.T_camera_lidar_guess);
+  ASSERT_EQ(rig.remarks.size(), 1U);
+  EXPECT_THAT(rig.remarks[0],
+              HasSubstr("rig.yaml:5: lidars.front.T_rig_lidar_guess is not used with left, which "
+                        "has no T_rig_camera_guess"));
+  EXPECT_TRUE(Load(text, "#rear,left").remarks.empty());
+}
+
+TEST(NamedSensors, SharedOptionsAreCheckedThoughASensorHasItsOwn) {
+  EXPECT_THAT(ErrorOf(Truck() + "lidar_board_detector: {max_rnage_m: 7}\n", "#rear,left"),
+              HasSubstr("rig.yaml:11: lidar_board_detector.max_rnage_m is not a known key"));
+}
+
 TEST(NamedSensors, ALensMayStillHaveToBeFoundWhicheverLidarIsBesideIt) {
   const test::TemporaryFolder folder;
   const std::string path =
@@ -213,8 +237,27 @@ TEST(NamedSensors, BothKindsMustBeGivenByUniqueNames) {
   EXPECT_EQ(ErrorOf(kHead + std::string(kLidars), ""),
             "rig.yaml:1: cameras must have a section for each, under its name, is not given");
   EXPECT_EQ(ErrorOf(kHead + std::string("lidars: {a b: , c: }\ncameras: {c: }\n"), ""),
-            "rig.yaml:4: lidars.a b must be named by letters, digits and _ alone, is empty\n"
+            "rig.yaml:4: lidars.a b must be named by a letter, then letters, digits and _ alone, "
+            "is empty\n"
             "rig.yaml:5: cameras.c must be named unlike every other sensor, is empty");
+}
+
+TEST(NamedSensors, NamesThatYamlReadsAsSomethingElseAreRefused) {
+  for (const char* word : {"no", "Off", "TRUE", "y"}) {
+    EXPECT_THAT(ErrorOf(kHead + std::string("lidars: {") + word + ": }\ncameras: {c: }\n", ""),
+                HasSubstr(std::string("rig.yaml:4: lidars.") + word +
+                          " must be named otherwise: YAML has a meaning for that word"));
+  }
+  for (const char* word : {"1e3", "_a", "0x1"}) {
+    EXPECT_THAT(ErrorOf(kHead + std::string("lidars: {") + word + ": }\ncameras: {c: }\n", ""),
+                HasSubstr(std::string("lidars.") + word + " must be named by a letter"));
+  }
+}
+
+TEST(NamedSensors, TwoPairsOfOneNameAreRefused) {
+  EXPECT_EQ(ErrorOf(kHead + std::string("lidars: {a: , a_b: }\ncameras: {b_c: , c: }\n"), "#a,c"),
+            "rig.yaml:5: cameras must not make pairs of one name: a with b_c and a_b with c are "
+            "both a_b_c, is a section");
 }
 
 TEST(NamedSensors, WhatASensorLacksIsToldAtItsEntry) {
@@ -254,6 +297,23 @@ TEST(NamedSensors, EachProblemOfAllPairsIsToldOnce) {
   EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
   EXPECT_THAT(error, HasSubstr("rig.yaml:2: board: width_m"));
   EXPECT_THAT(error, HasSubstr("rig.yaml:7: lidars.rear.lidar_board_detector.max_range_m"));
+}
+
+TEST(NamedSensors, EachRemarkOnTheFileIsToldOnce) {
+  const test::TemporaryFolder folder;
+  const std::string path =
+      folder.Write("rig.yaml", Truck() + "assessor: {scene_check: {min_contrast: 3}}\n");
+  std::ostringstream told;
+  const auto before = spdlog::default_logger();
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+      "told", std::make_shared<spdlog::sinks::ostream_sink_st>(told)));
+  const std::vector<Rig> rigs = LoadPairs(path);
+  spdlog::set_default_logger(before);
+  ASSERT_EQ(rigs.size(), 4U);
+  EXPECT_EQ(rigs[3].remarks.size(), 1U);
+  const std::string text = told.str();
+  EXPECT_THAT(text, HasSubstr("rig.yaml:11: "));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
 }  // namespace

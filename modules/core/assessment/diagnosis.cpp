@@ -194,7 +194,7 @@ Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
   RequireUsable("DiagnosisOptions", options.Problems());
   Diagnosis diagnosis;
   std::vector<FaultEquation> equations = MakeFaultEquations(samples, board, camera, T_camera_lidar);
-  std::vector<FaultParameter> known;
+  std::vector<FaultParameter> known = {kChessboardTurnX, kChessboardTurnY};
   if (range_offset.is_observable) known.push_back(kRangeOffset);
   SetOutliersAside(known, options, &equations, &diagnosis);
   const JudgedResult result{board, camera, T_camera_lidar, covariance};

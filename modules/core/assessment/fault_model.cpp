@@ -175,6 +175,15 @@ FaultEquation MakeEquation(const BoardSample& sample,
         return Residual(T_camera_lidar, T_lidar_board, PerturbLeft(T_camera_board, delta));
       }) *
       camera_answer.board_by_fault;
+  const auto with_turn = [&](double turn_x_rad, double turn_y_rad) {
+    Eigen::Isometry3d turned = T_camera_board;
+    turned.linear() = ExpSO3({turn_x_rad, turn_y_rad, 0.0}) * T_camera_board.linear();
+    return Residual(T_camera_lidar, T_lidar_board, turned);
+  };
+  equation.J.col(kNumExtrinsicParameters + kChessboardTurnX) =
+      (with_turn(kStep, 0.0) - with_turn(-kStep, 0.0)) / (2 * kStep);
+  equation.J.col(kNumExtrinsicParameters + kChessboardTurnY) =
+      (with_turn(0.0, kStep) - with_turn(0.0, -kStep)) / (2 * kStep);
   const auto with_offset = [&](double offset_m) {
     return Residual(T_camera_lidar, LidarBoardWithout(offset_m, lidar), T_camera_board);
   };

@@ -25,6 +25,9 @@ enum FaultParameter : int {
   kPatternX,     ///< The true pattern lies so many metres farther along the board's x...
   kPatternY,     ///< ...and y.
   kRangeOffset,  ///< The lidar's ranges are too long by so many metres.
+  /// All chessboards are turned about their centres by so many radians, about the camera's x...
+  kChessboardTurnX,
+  kChessboardTurnY,  ///< ...and y.
   kNumFaultParameters
 };
 

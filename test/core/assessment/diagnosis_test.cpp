@@ -136,6 +136,25 @@ TEST(Diagnose, FindsAWrongPrincipalPoint) {
   EXPECT_NEAR(finding.value, 67, 3 * finding.standard_error + 2);
 }
 
+// The result has taken it out.
+TEST(Diagnose, ATurnOfAllChessboardsIsNoFindingAndHidesNoOther) {
+  Session session;
+  for (BoardSample& sample : session.samples()) {
+    BoardPose& pose = sample.lidar.pose;  // the other way round, in the lidar's frame
+    const Eigen::Vector3d axis =
+        test::TestExtrinsic().linear().transpose() * Eigen::Vector3d::UnitY();
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(-0.015, axis).toRotationMatrix();
+    pose.normal = turn * pose.normal;
+    for (Eigen::Vector3d& corner : pose.corners_m) {
+      corner = pose.centre_m + turn * (corner - pose.centre_m);
+    }
+  }
+  EXPECT_THAT(session.Run().findings, IsEmpty());
+  session.given_camera.fx_px *= 1.01;
+  session.given_camera.fy_px *= 1.01;
+  EXPECT_EQ(FirstCause(session.Run()), "focal length");
+}
+
 TEST(Diagnose, FindsSquaresThatWereMisMeasured) {
   Session session;
   session.given_board.square_m *= 1.02;

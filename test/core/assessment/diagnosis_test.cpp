@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/assessment/fault_model.hpp"
 #include "core/camera_detection/planar_pose.hpp"
 #include "core/estimation/refine.hpp"
+#include "core/geometry/rigid.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal {
@@ -136,23 +138,26 @@ TEST(Diagnose, FindsAWrongPrincipalPoint) {
   EXPECT_NEAR(finding.value, 67, 3 * finding.standard_error + 2);
 }
 
-// The result has taken it out.
-TEST(Diagnose, ATurnOfAllChessboardsIsNoFindingAndHidesNoOther) {
-  Session session;
-  for (BoardSample& sample : session.samples()) {
-    BoardPose& pose = sample.lidar.pose;  // the other way round, in the lidar's frame
-    const Eigen::Vector3d axis =
-        test::TestExtrinsic().linear().transpose() * Eigen::Vector3d::UnitY();
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(-0.015, axis).toRotationMatrix();
+TEST(FitFaults, FindsATurnOfAllChessboards) {
+  constexpr double kTurnRad = 0.015;  // about the camera's y
+  std::vector<BoardSample> samples = test::SynthesizeSamples(Session::Noisy());
+  const Eigen::Matrix3d turn = ExpSO3({0.0, kTurnRad, 0.0});
+  for (BoardSample& sample : samples) {
+    BoardPose& pose = sample.camera.pose;
     pose.normal = turn * pose.normal;
     for (Eigen::Vector3d& corner : pose.corners_m) {
       corner = pose.centre_m + turn * (corner - pose.centre_m);
     }
   }
-  EXPECT_THAT(session.Run().findings, IsEmpty());
-  session.given_camera.fx_px *= 1.006;
-  session.given_camera.fy_px *= 1.006;
-  EXPECT_EQ(FirstCause(session.Run()), "focal length");
+  const FaultFit fit = FitFaults(
+      MakeFaultEquations(
+          test::Pointers(samples), test::TestBoard(), test::TestCamera(), test::TestExtrinsic()),
+      {kChessboardTurnX, kChessboardTurnY});
+  ASSERT_TRUE(fit.is_usable);
+  // They truly face as before.
+  EXPECT_NEAR(fit.Value(kChessboardTurnX), 0.0, 3 * fit.StandardError(kChessboardTurnX));
+  EXPECT_NEAR(fit.Value(kChessboardTurnY), -kTurnRad, 3 * fit.StandardError(kChessboardTurnY));
+  EXPECT_LT(fit.StandardError(kChessboardTurnY), 0.1 * kTurnRad);
 }
 
 TEST(Diagnose, FindsSquaresThatWereMisMeasured) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "core/board/board_sample.hpp"
@@ -76,11 +77,15 @@ struct ErrorPriors {
   SharedErrors shared = kPriorSharedErrors;
 };
 
+/// 1 sigma of the chessboard_turn between two cameras: the fit knows of the second's alone, and the
+/// first's has its form as far as the cameras look the same way.
+constexpr double kPriorTurnBetweenCamerasRad = M_SQRT2 * kPriorChessboardTurnRad;
+
 /// Of two cameras: by order of magnitude what a lens model's errors do to a board. They have none
 /// of a lidar's shared errors.
 constexpr ErrorPriors kCameraErrorPriors{
     {0.003, 0.001, 0.001, 0.005, 0.001},
-    {1e-6, 1e-6, 1e-6, kPriorChessboardTurnRad, kPriorChessboardTurnRad}};
+    {1e-6, 1e-6, 1e-6, kPriorTurnBetweenCamerasRad, kPriorTurnBetweenCamerasRad}};
 
 /// How one board's covariance grows with the square of each error, in the order of the struct.
 std::array<Matrix6d, kNumSightingErrors> UnitCovariances(const BoardPose& pose_camera,

@@ -91,7 +91,9 @@ extrinsic_refined_t ToMessage(const BestExtrinsic& best,
   for (const MethodTrial& trial : best.trials) message.trials.push_back(ToMessage(trial));
   message.num_trials = static_cast<std::int32_t>(message.trials.size());
   message.lidar_bias = ToMessage(best.Bias());
-  Eigen::Map<Eigen::Vector2d>(message.chessboard_turn_rad) = best.chessboard_turn_rad;
+  Eigen::Map<Eigen::Vector2d>(message.chessboard_turn_rad) = best.chessboard_turn.value_rad;
+  Eigen::Map<Eigen::Vector2d>(message.chessboard_turn_error_rad) =
+      best.chessboard_turn.standard_error_rad;
   const bool is_likelihood = best.method == RefineMethod::kLikelihood;
   const LikelihoodExtrinsic likelihood = is_likelihood ? best.likelihood : LikelihoodExtrinsic{};
   const LikelihoodUncertainty& uncertainty = likelihood.uncertainty;
@@ -121,7 +123,8 @@ BestExtrinsic FromMessage(const extrinsic_refined_t& message) {
   for (const method_trial_t& trial : message.trials) best.trials.push_back(FromMessage(trial));
   best.likelihood.T_camera_lidar = best.T_camera_lidar;
   best.likelihood.bias = FromMessage(message.lidar_bias);
-  best.chessboard_turn_rad = Eigen::Map<const Eigen::Vector2d>(message.chessboard_turn_rad);
+  best.chessboard_turn = {Eigen::Map<const Eigen::Vector2d>(message.chessboard_turn_rad),
+                          Eigen::Map<const Eigen::Vector2d>(message.chessboard_turn_error_rad)};
   best.likelihood.noise = {message.range_noise_m,
                            message.along_ray_error_m,
                            message.across_ray_error_m,

@@ -66,11 +66,11 @@ Calibration Assess(const ChosenSamples& chosen,
   result.scene_note = refined.scene_note;
   result.trials = refined.trials;
   result.lidar_bias = refined.Bias();
-  result.chessboard_turn_rad = refined.chessboard_turn_rad;
+  result.chessboard_turn = refined.chessboard_turn;
   result.averaged = PartOf(average);
   result.held_out = refined.held_out;
   result.in_sample = ScoreCorrected(
-      used, camera, result.T_camera_lidar, result.lidar_bias, result.chessboard_turn_rad);
+      used, camera, result.T_camera_lidar, result.lidar_bias, result.chessboard_turn.value_rad);
   result.of_average = ScoreScene(used, camera, average.T_camera_lidar);
   result.held_out_by_cell = BinByImageCell(used, result.held_out, camera);
   result.held_out_by_range = BinByRange(used, result.held_out);

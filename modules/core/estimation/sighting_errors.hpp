@@ -3,6 +3,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+
+#include <Eigen/Core>
 
 #include "core/board/board_sample.hpp"
 #include "core/geometry/rigid.hpp"
@@ -59,6 +62,13 @@ struct SharedErrors {
   /// elevation turn the lidar's planes, and look the same from here.)
   double chessboard_turn_x_rad = 0.0;
   double chessboard_turn_y_rad = 0.0;
+};
+
+/// Both chessboard_turns as estimated.
+struct ChessboardTurn {
+  Eigen::Vector2d value_rad = Eigen::Vector2d::Zero();
+  Eigen::Vector2d standard_error_rad =
+      Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());  ///< NaN: not estimated.
 };
 
 /// 1 sigma of a chessboard_turn before the data speak: a principal point that is 10 px off, of a

@@ -34,11 +34,12 @@ LidarBias LikelihoodExtrinsic::BiasAt(const Eigen::Isometry3d& T_camera_lidar_gi
   return moved;
 }
 
-Eigen::Vector2d LikelihoodExtrinsic::ChessboardTurnAt(
+ChessboardTurn LikelihoodExtrinsic::ChessboardTurnAt(
     const Eigen::Isometry3d& T_camera_lidar_given) const {
-  if (camera_faults.values.size() != kNumChessboardTurns) return Eigen::Vector2d::Zero();
-  return camera_faults.values + faults_by_extrinsic.bottomRows(kNumChessboardTurns) *
-                                    DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
+  if (camera_faults.values.size() != kNumChessboardTurns) return {};
+  const Eigen::Vector2d move_rad = faults_by_extrinsic.bottomRows(kNumChessboardTurns) *
+                                   DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
+  return {camera_faults.values + move_rad, camera_faults.standard_errors};
 }
 
 std::string LikelihoodExtrinsic::Summary() const {

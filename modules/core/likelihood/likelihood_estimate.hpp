@@ -9,6 +9,7 @@
 
 #include "core/camera/lens_errors.hpp"
 #include "core/estimation/refine_status.hpp"
+#include "core/estimation/sighting_errors.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/likelihood/lidar_bias.hpp"
 
@@ -77,9 +78,9 @@ struct LikelihoodExtrinsic {
   bool IsUsable() const { return status == RefineStatus::kConverged; }
   /// The most likely bias if that is the extrinsic; to first order.
   LidarBias BiasAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
-  /// The same of the chessboards' turn (SharedErrors), about the camera's x and y; zero where
-  /// LensErrors were asked for, or nothing is known.
-  Eigen::Vector2d ChessboardTurnAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
+  /// The same of the chessboards' turn; not estimated where LensErrors were asked for, or nothing
+  /// is known. Its standard error is as for the likelihood's own extrinsic, as the bias' are.
+  ChessboardTurn ChessboardTurnAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
   std::string Summary() const;  ///< One line for a log.
 };
 

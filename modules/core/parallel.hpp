@@ -2,15 +2,57 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <limits>
+#include <list>
+#include <mutex>
 #include <thread>
 #include <vector>
 
-#include <system_error>
-
 namespace voqcal {
+
+/// Threads that help whoever shares work out. Work within shared work finds those that are idle: no
+/// more are at work at once than there are, and the one that asked first.
+class Helpers {
+ public:
+  /// Of the process: with the thread that asks, one for each core.
+  static Helpers& Shared();
+
+  /// Fewer, if the host allows no more threads.
+  explicit Helpers(std::size_t num);
+  ~Helpers();
+  Helpers(const Helpers&) = delete;
+  Helpers& operator=(const Helpers&) = delete;
+
+  std::size_t num() const { return threads_.size(); }
+  /// While nobody shares work: for tests, as what is computed must not depend on it.
+  void SetNum(std::size_t num);
+
+  /// Calls `work` here and, as long as it goes on here, on up to `most` of those that are idle.
+  /// @param work  must not throw.
+  void Share(const std::function<void()>& work, std::size_t most);
+
+ private:
+  struct Shares {
+    const std::function<void()>* work;
+    std::size_t num_wanted;
+    std::size_t num_at_work = 0;
+  };
+
+  void Stop();
+  void Help();
+  Shares* FirstWanted();
+
+  std::vector<std::thread> threads_;
+  std::mutex mutex_;  // of what follows
+  std::condition_variable there_is_work_;
+  std::condition_variable work_has_ended_;
+  std::list<Shares> all_;
+  bool is_at_end_ = false;
+};
 
 /// Calls `work(i)` for each i below `num`, on as many threads as the machine has cores, but never
 /// more than `most_at_once`. What each call gives must depend on i alone and be stored by i: the
@@ -31,16 +73,12 @@ void ParallelFor(std::size_t num,
       }
     }
   };
-  const std::size_t num_threads =
-      std::min<std::size_t>({num, most_at_once, std::max(1U, std::thread::hardware_concurrency())});
-  std::vector<std::thread> threads;
-  try {
-    for (std::size_t i = 1; i < num_threads; ++i) threads.emplace_back(take_turns);
-  } catch (const std::system_error&) {
-    // The host allows no more: those that there are do it all.
+  const std::size_t num_at_once = std::min(num, most_at_once);
+  if (num_at_once > 1) {
+    Helpers::Shared().Share(take_turns, num_at_once - 1);
+  } else {
+    take_turns();
   }
-  take_turns();
-  for (std::thread& thread : threads) thread.join();
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);
   }

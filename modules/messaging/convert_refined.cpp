@@ -91,19 +91,21 @@ extrinsic_refined_t ToMessage(const BestExtrinsic& best,
   for (const MethodTrial& trial : best.trials) message.trials.push_back(ToMessage(trial));
   message.num_trials = static_cast<std::int32_t>(message.trials.size());
   message.lidar_bias = ToMessage(best.Bias());
-  Eigen::Map<Eigen::Vector2d>(message.chessboard_turn_rad) = best.chessboard_turn_rad;
+  Eigen::Map<Eigen::Vector2d>(message.chessboard_turn_rad) = best.chessboard_turn.value_rad;
+  Eigen::Map<Eigen::Vector2d>(message.chessboard_turn_error_rad) =
+      best.chessboard_turn.standard_error_rad;
   const bool is_likelihood = best.method == RefineMethod::kLikelihood;
   const LikelihoodExtrinsic likelihood = is_likelihood ? best.likelihood : LikelihoodExtrinsic{};
   const LikelihoodUncertainty& uncertainty = likelihood.uncertainty;
   Eigen::Map<Vector6d>(message.sigma_by_likelihood) = uncertainty.by_likelihood;
   Eigen::Map<Vector6d>(message.sigma_by_resampling) = uncertainty.by_resampling;
   Eigen::Map<Vector6d>(message.sigma_by_model_errors) = uncertainty.by_model_errors;
-  message.range_noise_m = likelihood.noise.range_m;
-  const SightingErrors& errors = likelihood.noise.errors;
-  message.along_ray_error_m = errors.along_ray_m;
-  message.across_ray_error_m = errors.level_m;
-  message.tilt_error_rad = errors.tilt_rad;
-  message.turn_error_rad = errors.turn_rad;
+  const LikelihoodNoise& noise = likelihood.noise;
+  message.range_noise_m = noise.range_m;
+  message.along_ray_error_m = noise.along_ray_m;
+  message.across_ray_error_m = noise.across_ray_m;
+  message.tilt_error_rad = noise.tilt_rad;
+  message.turn_error_rad = noise.turn_rad;
   return message;
 }
 
@@ -121,13 +123,13 @@ BestExtrinsic FromMessage(const extrinsic_refined_t& message) {
   for (const method_trial_t& trial : message.trials) best.trials.push_back(FromMessage(trial));
   best.likelihood.T_camera_lidar = best.T_camera_lidar;
   best.likelihood.bias = FromMessage(message.lidar_bias);
-  best.chessboard_turn_rad = Eigen::Map<const Eigen::Vector2d>(message.chessboard_turn_rad);
+  best.chessboard_turn = {Eigen::Map<const Eigen::Vector2d>(message.chessboard_turn_rad),
+                          Eigen::Map<const Eigen::Vector2d>(message.chessboard_turn_error_rad)};
   best.likelihood.noise = {message.range_noise_m,
-                           {message.along_ray_error_m,
-                            message.across_ray_error_m,
-                            message.across_ray_error_m,
-                            message.tilt_error_rad,
-                            message.turn_error_rad}};
+                           message.along_ray_error_m,
+                           message.across_ray_error_m,
+                           message.tilt_error_rad,
+                           message.turn_error_rad};
   LikelihoodUncertainty& uncertainty = best.likelihood.uncertainty;
   uncertainty.by_likelihood = Eigen::Map<const Vector6d>(message.sigma_by_likelihood);
   uncertainty.by_resampling = Eigen::Map<const Vector6d>(message.sigma_by_resampling);

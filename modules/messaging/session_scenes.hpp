@@ -1,13 +1,12 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <mutex>
 #include <optional>
 #include <set>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -60,32 +59,36 @@ class SessionSceneReader {
 /// Calls `work` for each scene for which `is_wanted` says so, one a core at a time: it must not
 /// matter which comes first. Of a log that is damaged somewhere, the scenes before that are done.
 /// Scenes of the same sample and time, as logs have that were joined, count once: the first.
+/// @param is_wanted  is called by one thread at a time, while `work` goes on.
 /// @throws as SessionSceneReader, and what `work` throws.
 template <typename IsWanted, typename Work>
 void ForEachScene(const std::filesystem::path& samples_log,
                   const IsWanted& is_wanted,
                   const Work& work) {
-  const std::size_t num_at_once = std::max(1U, std::thread::hardware_concurrency());
+  std::mutex reading;
   SessionSceneReader reader(samples_log);
   std::set<std::pair<std::int64_t, std::int64_t>> taken;  // id, utime
   bool is_at_end = false;
-  while (!is_at_end) {
-    std::vector<SessionScene> scenes;
-    std::exception_ptr damage;
+  std::exception_ptr damage;
+  const auto next = [&]() -> std::optional<SessionScene> {
+    const std::lock_guard<std::mutex> lock(reading);
     try {
-      while (scenes.size() < num_at_once && !is_at_end) {
+      while (!is_at_end) {
         std::optional<SessionScene> scene = reader.Next();
         is_at_end = !scene;
         if (!scene || !is_wanted(*scene)) continue;
-        if (!taken.emplace(scene->sample_id, scene->sweep.utime).second) continue;
-        scenes.push_back(*std::move(scene));
+        if (taken.emplace(scene->sample_id, scene->sweep.utime).second) return scene;
       }
     } catch (...) {
+      is_at_end = true;
       damage = std::current_exception();
     }
-    ParallelFor(scenes.size(), [&](std::size_t i) { work(scenes[i]); });
-    if (damage) std::rethrow_exception(damage);
-  }
+    return std::nullopt;
+  };
+  ParallelFor(1 + Helpers::Shared().num(), [&](std::size_t) {
+    while (const std::optional<SessionScene> scene = next()) work(*scene);
+  });
+  if (damage) std::rethrow_exception(damage);
 }
 
 }  // namespace voqcal

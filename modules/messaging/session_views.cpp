@@ -17,8 +17,13 @@ namespace voqcal {
 SessionViews::SessionViews(const BoardSpec& board,
                            const CameraModel& camera,
                            const SceneViewOptions& options,
-                           const std::filesystem::path& samples_log)
-    : board_(board), camera_(camera), options_(options), samples_log_(samples_log) {}
+                           const std::filesystem::path& samples_log,
+                           OnSceneImage on_image)
+    : board_(board),
+      camera_(camera),
+      options_(options),
+      samples_log_(samples_log),
+      on_image_(std::move(on_image)) {}
 
 std::vector<SceneView> SessionViews::Of(const std::vector<const BoardSample*>& samples) {
   std::map<Key, const BoardSample*> wanted;
@@ -26,22 +31,24 @@ std::vector<SceneView> SessionViews::Of(const std::vector<const BoardSample*>& s
   for (auto view = views_.begin(); view != views_.end();) {
     view = wanted.count(view->first) == 0 ? views_.erase(view) : std::next(view);
   }
-  if (std::filesystem::exists(samples_log_)) ReadNew(wanted);
+  std::map<Key, const BoardSample*> missing = wanted;
+  for (const auto& [key, view] : views_) missing.erase(key);
+  if (std::filesystem::exists(samples_log_)) Read(missing);
   std::vector<SceneView> views;
   for (const auto& [key, view] : views_) views.push_back(view);
   return views;
 }
 
-void SessionViews::ReadNew(const std::map<Key, const BoardSample*>& samples) {
+void SessionViews::Read(const std::map<Key, const BoardSample*>& samples) {
   const auto key_of = [](const SessionScene& scene) {
     return Key(scene.sample_id, scene.sweep.utime);
   };
-  const auto is_new = [&](const SessionScene& scene) {
-    return samples.count(key_of(scene)) != 0 && views_.count(key_of(scene)) == 0;
+  const auto is_wanted = [&](const SessionScene& scene) {
+    return samples.count(key_of(scene)) != 0;
   };
   std::mutex adding;
   try {
-    ForEachScene(samples_log_, is_new, [&](const SessionScene& scene) {
+    ForEachScene(samples_log_, is_wanted, [&](const SessionScene& scene) {
       const Key key = key_of(scene);
       std::optional<SceneView> view = ViewOf(scene, *samples.at(key));
       if (!view) return;
@@ -56,8 +63,11 @@ void SessionViews::ReadNew(const std::map<Key, const BoardSample*>& samples) {
 std::optional<SceneView> SessionViews::ViewOf(const SessionScene& scene,
                                               const BoardSample& sample) const {
   try {
-    return MakeSceneView(
-        FromMessage(scene.sweep), FromMessage(scene.image), sample, board_, camera_, options_);
+    const cv::Mat image = FromMessage(scene.image);
+    SceneView view =
+        MakeSceneView(FromMessage(scene.sweep), image, sample, board_, camera_, options_);
+    if (on_image_) on_image_(sample, image);
+    return view;
   } catch (const std::exception& error) {
     spdlog::warn("{}: the scene of sample {} is left out: {}",
                  samples_log_.string(),
@@ -70,8 +80,10 @@ std::optional<SceneView> SessionViews::ViewOf(const SessionScene& scene,
 SceneViewsOf ViewsOfSession(const BoardSpec& board,
                             const CameraModel& camera,
                             const SceneViewOptions& options,
-                            const std::filesystem::path& samples_log) {
-  const auto views = std::make_shared<SessionViews>(board, camera, options, samples_log);
+                            const std::filesystem::path& samples_log,
+                            OnSceneImage on_image) {
+  const auto views =
+      std::make_shared<SessionViews>(board, camera, options, samples_log, std::move(on_image));
   return [views](const std::vector<const BoardSample*>& samples) { return views->Of(samples); };
 }
 

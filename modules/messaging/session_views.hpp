@@ -2,10 +2,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
 #include <vector>
+
+#include <opencv2/core/mat.hpp>
 
 #include "core/board/board_sample.hpp"
 #include "core/board/board_spec.hpp"
@@ -16,6 +19,9 @@
 
 namespace voqcal {
 
+/// Is told of a sample's decoded image, by several threads at once.
+using OnSceneImage = std::function<void(const BoardSample& sample, const cv::Mat& image)>;
+
 /// The edges of each sample's scene, taken from the session's samples.lcm: one sweep and one image
 /// a core in memory at a time, each worked on once.
 class SessionViews {
@@ -23,7 +29,8 @@ class SessionViews {
   SessionViews(const BoardSpec& board,
                const CameraModel& camera,
                const SceneViewOptions& options,
-               const std::filesystem::path& samples_log);
+               const std::filesystem::path& samples_log,
+               OnSceneImage on_image = {});
 
   /// Of the samples that have a scene, in order. A log that is not there (the sample collector runs
   /// on another machine) has none; a scene that cannot be read is left out with a warning.
@@ -33,13 +40,14 @@ class SessionViews {
   /// A new session on the same folder counts its samples anew, at other times.
   using Key = std::pair<std::int64_t, std::int64_t>;  // id, utime
 
-  void ReadNew(const std::map<Key, const BoardSample*>& samples);
+  void Read(const std::map<Key, const BoardSample*>& samples);
   std::optional<SceneView> ViewOf(const SessionScene& scene, const BoardSample& sample) const;
 
   BoardSpec board_;
   CameraModel camera_;
   SceneViewOptions options_;
   std::filesystem::path samples_log_;
+  OnSceneImage on_image_;
   std::map<Key, SceneView> views_;
 };
 
@@ -47,6 +55,7 @@ class SessionViews {
 SceneViewsOf ViewsOfSession(const BoardSpec& board,
                             const CameraModel& camera,
                             const SceneViewOptions& options,
-                            const std::filesystem::path& samples_log);
+                            const std::filesystem::path& samples_log,
+                            OnSceneImage on_image = {});
 
 }  // namespace voqcal

@@ -124,9 +124,9 @@ std::string ToYaml(const CalibrationResult& result) {
          "# all chessboards are seen turned by so much about the camera's x and y, against the "
          "rays\n"
          "# to their centres, as by a principal point that is given wrongly\n"
-         "chessboard_turn_rad: [" +
-         NumberText(result.chessboard_turn_rad.x()) + ", " +
-         NumberText(result.chessboard_turn_rad.y()) + "]\n" +
+         "chessboard_turn_rad: " +
+         ListYaml(result.chessboard_turn.value_rad) + "\nchessboard_turn_standard_error_rad: " +
+         ListYaml(result.chessboard_turn.standard_error_rad) + "\n" +
          LensCorrectionYaml(result.lens_correction) +
          "# reprojection error of the board's centre in pixels, and times the metres per pixel at "
          "the\n"

@@ -12,7 +12,6 @@
 #include "core/format.hpp"
 #include "messaging/log.hpp"
 #include "result/poses_csv.hpp"
-#include "sample_collector/session_log.hpp"
 
 namespace voqcal {
 namespace {
@@ -74,8 +73,9 @@ std::unique_ptr<OfflineRun> RunFromSamplesLog(const Rig& rig,
     throw std::runtime_error(session_folder.string() + ": cannot be written: " +
                              (is_full ? "No space left on device" : error.message()));
   }
-  RequireThisCamera(log, SessionLog(session_folder).samples(), rig);
-  return std::make_unique<OfflineRun>(rig, session_folder);
+  auto run = std::make_unique<OfflineRun>(rig, session_folder);
+  RequireThisCamera(log, run->samples(), rig);
+  return run;
 }
 
 std::unique_ptr<OfflineRun> RunFromTable(const Rig& rig,

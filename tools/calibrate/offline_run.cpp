@@ -37,8 +37,14 @@ OfflineRun::OfflineRun(const Rig& rig,
       collector_(rig, &bus_, session_folder),
       selector_(rig, &bus_),
       estimator_(rig, &bus_),
-      scene_views_(ViewsOfSession(
-          rig.board, rig.camera, rig.scene_check.view, session_folder / kSamplesLogName)),
+      grounds_(rig.camera),
+      scene_views_(ViewsOfSession(rig.board,
+                                  rig.camera,
+                                  rig.scene_check.view,
+                                  session_folder / kSamplesLogName,
+                                  [this](const BoardSample& sample, const cv::Mat& image) {
+                                    grounds_.Add(sample, image);
+                                  })),
       refiner_(rig, &bus_, scene_views_),
       assessor_(rig, &bus_, session_folder, scene_views_),
       averaged_{} {

@@ -9,6 +9,7 @@
 
 #include "assessor/assessor_node.hpp"
 #include "calibrate/detected_boards.hpp"
+#include "calibrate/picture_grounds.hpp"
 #include "calibrate/recording_clocks.hpp"
 #include "camera_board_detector/camera_board_detector_node.hpp"
 #include "extrinsic_estimator/extrinsic_estimator_node.hpp"
@@ -62,6 +63,8 @@ class OfflineRun {
   /// The samples, each with the lidar's candidate that was chosen for it.
   std::vector<BoardSample> SamplesAsChosen() const;
   const AssessorNode& assessor() const { return assessor_; }
+  /// Of the samples that were used, after Finish.
+  const KeptGrounds& grounds() const { return grounds_; }
   /// The newest EXTRINSIC_AVERAGED: the chosen sets and what each gave.
   const extrinsic_averaged_t& averaged() const { return averaged_; }
   /// Every CALIB_EVENT.
@@ -88,6 +91,7 @@ class OfflineRun {
   SampleCollectorNode collector_;
   VoqSelectorNode selector_;
   ExtrinsicEstimatorNode estimator_;
+  KeptGrounds grounds_;
   SceneViewsOf scene_views_;
   ExtrinsicRefinerNode refiner_;
   AssessorNode assessor_;

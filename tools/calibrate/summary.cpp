@@ -60,13 +60,16 @@ std::string MethodLines(const CalibrationResult& result) {
   text += ")\n";
   if (!result.scene_note.empty()) text += "scene   " + result.scene_note + "\n";
   constexpr double kLeastDeg = 0.05;
-  const Eigen::Vector2d turn_deg = kDegPerRad * result.chessboard_turn_rad;
+  const Eigen::Vector2d turn_deg = kDegPerRad * result.chessboard_turn.value_rad;
+  const Eigen::Vector2d sigma_deg = kDegPerRad * result.chessboard_turn.standard_error_rad;
   if (turn_deg.norm() > kLeastDeg) {
     text += Format(
-        "chessboards  turned by %+.2f %+.2f deg about the camera's x and y against the rays to "
-        "them, as a principal point that is off does: taken out\n",
+        "chessboards  turned by %+.2f +- %.2f and %+.2f +- %.2f deg about the camera's x and y "
+        "against the rays to them, as a principal point that is off does: taken out\n",
         turn_deg.x(),
-        turn_deg.y());
+        sigma_deg.x(),
+        turn_deg.y(),
+        sigma_deg.y());
   }
   if (!result.lidar_bias.IsObservable()) return text + "lidar's range errors  not estimated\n";
   text += "lidar's range errors  common " + result.lidar_bias.common.Text() +

@@ -10,7 +10,6 @@
 #include <optional>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -120,14 +119,14 @@ double AvailableBytes() {
          static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-/// Pairs: each keeps some seconds of sweeps and images, and at its end works on a decoded scene a
+/// Pairs: each keeps some seconds of sweeps and images; all together work on a decoded scene a
 /// core.
 std::size_t MostAtOnce() {
-  constexpr double kBytesOfFrames = 1e9;
+  constexpr double kBytesOfPair = 1e9;
   constexpr double kBytesOfScene = 1e8;  // an image of 8 MP with its gradients, a sweep
-  const double bytes_of_pair =
-      kBytesOfFrames + kBytesOfScene * std::max(1U, std::thread::hardware_concurrency());
-  return static_cast<std::size_t>(std::max(1.0, AvailableBytes() / bytes_of_pair));
+  const double bytes_of_scenes = kBytesOfScene * static_cast<double>(1 + Helpers::Shared().num());
+  return static_cast<std::size_t>(
+      std::max(1.0, (AvailableBytes() - bytes_of_scenes) / kBytesOfPair));
 }
 
 /// A pose of the board in a session, as its camera saw it.

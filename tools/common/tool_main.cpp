@@ -6,8 +6,11 @@
 #include <cstring>
 #include <exception>
 #include <iostream>
+#include <limits>
 #include <stdexcept>
 #include <string>
+
+#include <malloc.h>
 
 #include "messaging/process.hpp"
 
@@ -43,6 +46,14 @@ int StatusOf(const std::string& program, const std::function<void()>& steps) {
   return EXIT_SUCCESS;
 }
 
+// An image's memory is kept for the next one: to have the system clear it anew costs a tenth of a
+// calibration.
+void KeepFreedMemory() {
+  constexpr int kLargestOfGlibc = 32 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLargestOfGlibc);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+}
+
 }  // namespace
 
 int RunTool(CLI::App* app, int argc, const char* const* argv, const std::function<void()>& body) {
@@ -56,6 +67,7 @@ int RunTool(CLI::App* app, int argc, const char* const* argv, const std::functio
     return kUsageError;
   }
   LogToStderr(app->get_name(), false);
+  KeepFreedMemory();
   return StatusOf(app->get_name(), body);
 }
 

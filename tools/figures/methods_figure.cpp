@@ -36,7 +36,7 @@ void PrintMethod(const Rig& rig,
                                           rig.camera,
                                           refined.T_camera_lidar,
                                           refined.Bias(),
-                                          refined.chessboard_turn_rad);
+                                          refined.chessboard_turn.value_rad);
   std::printf("%-12s  %9.2f  %9.2f  %10.3f  %7.4f",
               ToString(method).c_str(),
               score.centre_mm.mean,

@@ -74,7 +74,7 @@ void PrintSubsets(const SubsetsArgs& args) {
       continue;
     }
     const SceneScore score = ScoreCorrected(
-        draw.rest, rig.camera, best.T_camera_lidar, best.Bias(), best.chessboard_turn_rad);
+        draw.rest, rig.camera, best.T_camera_lidar, best.Bias(), best.chessboard_turn.value_rad);
     std::printf("%4d  %-12s  %9.2f  %9.2f  %10.3f\n",
                 i,
                 ToString(best.method).c_str(),

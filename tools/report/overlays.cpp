@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
 
-#include "files/atomic_file.hpp"
+#include "calibrate/picture_grounds.hpp"
 #include "images/jpeg.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
@@ -28,81 +31,57 @@ int ToInt(double coordinate) {
   return static_cast<int>(std::lround(std::clamp(coordinate, -kFarOut, kFarOut)));
 }
 
-/// A part of the image, scaled: pixel (0, 0) is the centre of the top-left pixel in both.
-struct View {
-  cv::Rect part_px;
-  double scale = 1.0;
+cv::Point ToFixed(const PictureView& view, const Eigen::Vector2d& pixel_px) {
+  const Eigen::Vector2d at = view.ToPicture(pixel_px);
+  return {ToInt(at.x() * (1 << kSubPixelBits)), ToInt(at.y() * (1 << kSubPixelBits))};
+}
 
-  cv::Point ToFixed(const Eigen::Vector2d& pixel_px) const {
-    const double x = (pixel_px.x() - part_px.x + 0.5) * scale - 0.5;
-    const double y = (pixel_px.y() - part_px.y + 0.5) * scale - 0.5;
-    return {ToInt(x * (1 << kSubPixelBits)), ToInt(y * (1 << kSubPixelBits))};
-  }
+/// A point of the sweep in the image, and the colour of its range.
+struct SeenPoint {
+  Eigen::Vector2d pixel_px;
+  cv::Vec3b colour_bgr;
 };
 
-cv::Mat Cut(const cv::Mat& image, const View& view) {
-  cv::Mat cut;
-  const int method = view.scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC;
-  cv::resize(image(view.part_px), cut, {}, view.scale, view.scale, method);
-  if (cut.channels() == 1) cv::cvtColor(cut, cut, cv::COLOR_GRAY2BGR);
-  return cut;
-}
-
-cv::Scalar ToScalar(const cv::Vec3b& bgr) {
-  return {double(bgr[0]), double(bgr[1]), double(bgr[2])};
-}
-
-void DrawPoints(const PointCloud& cloud_lidar_m,
-                const CameraModel& camera,
-                const Eigen::Isometry3d& T_camera_lidar,
-                const View& view,
-                double radius_px,
-                cv::Mat* picture) {
-  const int radius = static_cast<int>(radius_px * (1 << kSubPixelBits));
-  // Where a point shows: the picture and a little about it.
-  const int margin = radius + (2 << kSubPixelBits);
-  const cv::Rect drawn(-margin,
-                       -margin,
-                       (picture->cols << kSubPixelBits) + 2 * margin,
-                       (picture->rows << kSubPixelBits) + 2 * margin);
+/// Those that lie in the image.
+std::vector<SeenPoint> PointsInImage(const PointCloud& cloud_lidar_m,
+                                     const CameraModel& camera,
+                                     const Eigen::Isometry3d& T_camera_lidar) {
+  std::vector<SeenPoint> seen;
   for (const LidarPoint& point : cloud_lidar_m.points) {
     if (!point.position_m.allFinite() || point.position_m.isZero()) continue;
     const Eigen::Vector3d p_lidar_m = point.position_m.cast<double>();
     const Eigen::Vector3d p_camera_m = T_camera_lidar * p_lidar_m;
-    if (!camera.IsInFront(p_camera_m)) continue;
-    const Eigen::Vector2d pixel_px = camera.Project<double>(p_camera_m);
-    if (!camera.Contains(pixel_px)) continue;
-    const cv::Point at = view.ToFixed(pixel_px);
-    if (!drawn.contains(at)) continue;
-    cv::circle(*picture,
-               at,
-               radius,
-               ToScalar(RangeColourBgr(p_lidar_m.norm())),
-               cv::FILLED,
-               cv::LINE_AA,
-               kSubPixelBits);
+    const auto pixel_px = camera.ProjectIfInFront<double>(p_camera_m);
+    if (!pixel_px || !camera.Contains(*pixel_px)) continue;
+    seen.push_back({*pixel_px, RangeColourBgr(p_lidar_m.norm())});
   }
+  return seen;
 }
 
-/// The board's corners and centre in the image; nothing if one of them is not in front.
-std::vector<Eigen::Vector2d> OutlinePx(const BoardPose& pose,
-                                       const Eigen::Isometry3d& T_camera_sensor,
-                                       const CameraModel& camera) {
-  std::vector<Eigen::Vector3d> points_camera_m;
-  for (const Eigen::Vector3d& corner_m : pose.corners_m) {
-    points_camera_m.push_back(T_camera_sensor * corner_m);
+/// Each a disc with a smooth edge: thousands of them, for each of which cv::circle makes a polygon.
+void DrawPoints(const std::vector<SeenPoint>& points,
+                const PictureView& view,
+                double radius_px,
+                cv::Mat* picture) {
+  const double reach_px = radius_px + 0.5;
+  for (const SeenPoint& point : points) {
+    const Eigen::Vector2d at = view.ToPicture(point.pixel_px);
+    const int left = std::max(0, ToInt(std::ceil(at.x() - reach_px)));
+    const int right = std::min(picture->cols - 1, ToInt(std::floor(at.x() + reach_px)));
+    const int top = std::max(0, ToInt(std::ceil(at.y() - reach_px)));
+    const int bottom = std::min(picture->rows - 1, ToInt(std::floor(at.y() + reach_px)));
+    for (int y = top; y <= bottom; ++y) {
+      for (int x = left; x <= right; ++x) {
+        const double share = std::clamp(reach_px - (at - Eigen::Vector2d(x, y)).norm(), 0.0, 1.0);
+        cv::Vec3b& pixel = picture->at<cv::Vec3b>(y, x);
+        pixel = share * cv::Vec3d(point.colour_bgr) + (1 - share) * cv::Vec3d(pixel);
+      }
+    }
   }
-  points_camera_m.push_back(T_camera_sensor * pose.centre_m);
-  std::vector<Eigen::Vector2d> pixels_px;
-  for (const Eigen::Vector3d& point_camera_m : points_camera_m) {
-    if (!camera.IsInFront(point_camera_m)) return {};
-    pixels_px.push_back(camera.Project<double>(point_camera_m));
-  }
-  return pixels_px;
 }
 
 void DrawOutline(const std::vector<Eigen::Vector2d>& outline_px,
-                 const View& view,
+                 const PictureView& view,
                  const cv::Scalar& colour,
                  bool is_upright_cross,
                  int thickness_px,
@@ -110,14 +89,14 @@ void DrawOutline(const std::vector<Eigen::Vector2d>& outline_px,
   if (outline_px.empty()) return;
   for (std::size_t i = 0; i < 4; ++i) {
     cv::line(*picture,
-             view.ToFixed(outline_px[i]),
-             view.ToFixed(outline_px[(i + 1) % 4]),
+             ToFixed(view, outline_px[i]),
+             ToFixed(view, outline_px[(i + 1) % 4]),
              colour,
              thickness_px,
              cv::LINE_AA,
              kSubPixelBits);
   }
-  const cv::Point centre = view.ToFixed(outline_px[4]);
+  const cv::Point centre = ToFixed(view, outline_px[4]);
   const int arm = 9 << kSubPixelBits;
   const std::array<cv::Point, 2> arms =
       is_upright_cross ? std::array<cv::Point, 2>{cv::Point(arm, 0), cv::Point(0, arm)}
@@ -128,26 +107,36 @@ void DrawOutline(const std::vector<Eigen::Vector2d>& outline_px,
   }
 }
 
-/// The board with a margin, as large in the picture as `size_px` allows.
-View NearView(const std::vector<Eigen::Vector2d>& outline_px, const cv::Size& image_size) {
-  constexpr double kMargin = 0.25;  // of the board's size, on each side
-  constexpr double kSizePx = 400;
-  Eigen::AlignedBox2d box;
-  for (const Eigen::Vector2d& pixel_px : outline_px) box.extend(pixel_px);
-  const double side_px = (1 + 2 * kMargin) * box.sizes().maxCoeff();
-  const Eigen::Vector2d corner_px = box.center() - Eigen::Vector2d::Constant(side_px / 2);
-  View view;
-  view.part_px =
-      cv::Rect(ToInt(corner_px.x()), ToInt(corner_px.y()), ToInt(side_px), ToInt(side_px)) &
-      cv::Rect({}, image_size);
-  view.scale = kSizePx / side_px;
-  return view;
+cv::Mat SceneWith(const PictureGrounds& grounds, const std::vector<SeenPoint>& points) {
+  cv::Mat picture = grounds.scene.clone();
+  DrawPoints(points, grounds.scene_view, 1.7, &picture);
+  return picture;
 }
 
+cv::Mat BoardWith(const PictureGrounds& grounds,
+                  const std::vector<SeenPoint>& points,
+                  const std::vector<Eigen::Vector2d>& by_lidar_px) {
+  const cv::Scalar green(80, 220, 60);
+  const cv::Scalar magenta(220, 40, 240);
+  if (grounds.board.empty()) return {};
+  cv::Mat picture = grounds.board.clone();
+  DrawPoints(points, grounds.board_view, 2.7, &picture);
+  DrawOutline(by_lidar_px, grounds.board_view, magenta, false, 5, &picture);
+  // Thinner and above: both are seen.
+  DrawOutline(grounds.by_camera_px, grounds.board_view, green, true, 2, &picture);
+  return picture;
+}
+
+// Not synced: it is there until the page is made of it.
 void WritePicture(const cv::Mat& picture, const std::filesystem::path& path) {
   constexpr int kQuality = 72;
   const std::vector<std::uint8_t> jpeg = EncodeJpeg(picture, kQuality);
-  WriteFileAtomically(path, {reinterpret_cast<const char*>(jpeg.data()), jpeg.size()});
+  errno = 0;
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
+  file.close();
+  if (!file)
+    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
 }
 
 }  // namespace
@@ -168,29 +157,16 @@ cv::Vec3b RangeColourBgr(double range_m) {
 cv::Mat DrawScene(const PosePicture& scene,
                   const CameraModel& camera,
                   const Eigen::Isometry3d& T_camera_lidar) {
-  constexpr double kMaxWidthPx = 720;
-  const View view{cv::Rect({}, scene.image.size()), std::min(1.0, kMaxWidthPx / scene.image.cols)};
-  cv::Mat picture = Cut(scene.image, view);
-  DrawPoints(scene.sweep_lidar_m, camera, T_camera_lidar, view, 1.3, &picture);
-  return picture;
+  return SceneWith(GroundsOf(scene.sample, scene.image, camera),
+                   PointsInImage(scene.sweep_lidar_m, camera, T_camera_lidar));
 }
 
 cv::Mat DrawBoard(const PosePicture& scene,
                   const CameraModel& camera,
                   const Eigen::Isometry3d& T_camera_lidar) {
-  const cv::Scalar green(80, 220, 60);
-  const cv::Scalar magenta(220, 40, 240);
-  const auto by_camera_px =
-      OutlinePx(scene.sample.camera.pose, Eigen::Isometry3d::Identity(), camera);
-  if (by_camera_px.empty()) return {};
-  const View view = NearView(by_camera_px, scene.image.size());
-  if (view.part_px.empty()) return {};
-  cv::Mat picture = Cut(scene.image, view);
-  DrawPoints(scene.sweep_lidar_m, camera, T_camera_lidar, view, 2.2, &picture);
-  const auto by_lidar_px = OutlinePx(scene.sample.lidar.pose, T_camera_lidar, camera);
-  DrawOutline(by_lidar_px, view, magenta, false, 5, &picture);
-  DrawOutline(by_camera_px, view, green, true, 2, &picture);  // thinner and above: both are seen
-  return picture;
+  return BoardWith(GroundsOf(scene.sample, scene.image, camera),
+                   PointsInImage(scene.sweep_lidar_m, camera, T_camera_lidar),
+                   OutlinePx(scene.sample.lidar.pose, T_camera_lidar, camera));
 }
 
 void WriteOverlays(const Rig& rig,
@@ -207,17 +183,28 @@ void WriteOverlays(const Rig& rig,
     return sample != samples.end() && sample->second->utime == scene.sweep.utime;
   };
   ForEachScene(samples_log, is_kept, [&](const SessionScene& messages) {
-    const cv::Mat image = FromMessage(messages.image);
+    const BoardSample& sample = *samples.at(messages.sample_id);
+    const PictureGrounds* kept = run.grounds().Of(sample);
+    const PictureGrounds grounds =
+        kept != nullptr ? *kept : GroundsOf(sample, FromMessage(messages.image), rig.camera);
     const PointCloud sweep_lidar_m = FromMessage(messages.sweep);
-    const PosePicture scene{*samples.at(messages.sample_id), image, sweep_lidar_m};
     char id[24];
     std::snprintf(id, sizeof(id), "%04lld", static_cast<long long>(messages.sample_id));
     const auto write = [&](const char* kind, const cv::Mat& picture) {
       if (!picture.empty()) WritePicture(picture, folder / (std::string(id) + kind + ".jpg"));
     };
-    write("_scene", DrawScene(scene, rig.camera, result.T_camera_lidar));
-    write("_before", DrawBoard(scene, rig.camera, result.averaged.T_camera_lidar));
-    write("_after", DrawBoard(scene, rig.camera, result.T_camera_lidar));
+    const auto points_by = [&](const Eigen::Isometry3d& T_camera_lidar) {
+      return PointsInImage(sweep_lidar_m, rig.camera, T_camera_lidar);
+    };
+    const auto outline_by = [&](const Eigen::Isometry3d& T_camera_lidar) {
+      return OutlinePx(sample.lidar.pose, T_camera_lidar, rig.camera);
+    };
+    const Eigen::Isometry3d& T_before = result.averaged.T_camera_lidar;
+    const Eigen::Isometry3d& T_after = result.T_camera_lidar;
+    const std::vector<SeenPoint> points_after = points_by(T_after);
+    write("_scene", SceneWith(grounds, points_after));
+    write("_before", BoardWith(grounds, points_by(T_before), outline_by(T_before)));
+    write("_after", BoardWith(grounds, points_after, outline_by(T_after)));
   });
 }
 

@@ -72,12 +72,11 @@ SceneScore ReprojectionHeldOut(const std::vector<const BoardSample*>& samples,
 
 // At a given extrinsic. The likelihood tells it from what the scan lines' offsets do to the lidar's
 // planes; the sightings alone do not.
-Eigen::Vector2d ChessboardTurn(const LikelihoodExtrinsic& likelihood,
-                               const MixedFit& sightings,
-                               const Eigen::Isometry3d& T_camera_lidar) {
-  if (likelihood.IsUsable()) return likelihood.ChessboardTurnAt(T_camera_lidar);
-  const SharedErrors shared = sightings.SharedAt(T_camera_lidar);
-  return {shared.chessboard_turn_x_rad, shared.chessboard_turn_y_rad};
+ChessboardTurn TurnAt(const LikelihoodExtrinsic& likelihood,
+                      const MixedFit& sightings,
+                      const Eigen::Isometry3d& T_camera_lidar) {
+  return likelihood.IsUsable() ? likelihood.ChessboardTurnAt(T_camera_lidar)
+                               : sightings.ChessboardTurnAt(T_camera_lidar);
 }
 
 SceneScore LikelihoodHeldOut(const std::vector<const BoardSample*>& samples,
@@ -87,7 +86,8 @@ SceneScore LikelihoodHeldOut(const std::vector<const BoardSample*>& samples,
     const LikelihoodExtrinsic& refined = others.likelihood;
     if (!refined.IsUsable()) return PoseScore{};
     return ScorePose(
-        CorrectedSample(sample, refined.bias, refined.ChessboardTurnAt(refined.T_camera_lidar)),
+        CorrectedSample(
+            sample, refined.bias, refined.ChessboardTurnAt(refined.T_camera_lidar).value_rad),
         camera,
         refined.T_camera_lidar);
   });
@@ -104,7 +104,7 @@ SceneScore JointHeldOut(const std::vector<const BoardSample*>& samples,
         joint.Without(others.sightings, has_likelihood ? &others.likelihood : nullptr);
     const LidarBias bias = has_likelihood ? others.likelihood.BiasAt(T_camera_lidar) : LidarBias{};
     const Eigen::Vector2d turn_rad =
-        ChessboardTurn(others.likelihood, others.sightings, T_camera_lidar);
+        TurnAt(others.likelihood, others.sightings, T_camera_lidar).value_rad;
     return ScorePose(CorrectedSample(sample, bias, turn_rad), camera, T_camera_lidar);
   });
 }
@@ -304,8 +304,7 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
   const bool is_turn_taken_out =
       best.method == RefineMethod::kLikelihood || best.method == RefineMethod::kJoint;
   if (best.IsUsable() && is_turn_taken_out) {
-    best.chessboard_turn_rad =
-        ChessboardTurn(best.likelihood, best.joint.sightings, best.T_camera_lidar);
+    best.chessboard_turn = TurnAt(best.likelihood, best.joint.sightings, best.T_camera_lidar);
   }
   best.reprojection_rms_px = CentreRmsPx(ScoreScene(samples, camera, best.T_camera_lidar));
   return best;

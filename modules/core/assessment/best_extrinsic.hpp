@@ -72,9 +72,9 @@ struct BestExtrinsic {
   bool IsUsable() const { return problem.empty(); }
   /// The lidar's faults that go with the extrinsic: none, unless it is the likelihood's or joint.
   LidarBias Bias() const;
-  /// How the chessboards are turned against their rays (SharedErrors): zero, unless it is the
-  /// likelihood's or joint.
-  Eigen::Vector2d chessboard_turn_rad = Eigen::Vector2d::Zero();
+  /// How the chessboards are turned against their rays (SharedErrors): not estimated, unless it is
+  /// the likelihood's or joint.
+  ChessboardTurn chessboard_turn;
 };
 
 /// The sample with the boards as they would have been seen without the lidar's `bias` and the

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/camera/lens_errors.hpp"
-#include "core/likelihood/lens_terms.hpp"
+#include "core/likelihood/camera_faults.hpp"
 
 namespace voqcal {
 namespace {

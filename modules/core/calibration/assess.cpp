@@ -1,5 +1,9 @@
+#include <array>
+#include <functional>
+
 #include "core/calibration/calibrate.hpp"
 #include "core/calibration/likely_cause.hpp"
+#include "core/parallel.hpp"
 #include "core/selection/voq.hpp"
 
 namespace voqcal {
@@ -66,30 +70,36 @@ Calibration Assess(const ChosenSamples& chosen,
   result.scene_note = refined.scene_note;
   result.trials = refined.trials;
   result.lidar_bias = refined.Bias();
-  result.chessboard_turn_rad = refined.chessboard_turn_rad;
+  result.chessboard_turn = refined.chessboard_turn;
   result.averaged = PartOf(average);
   result.held_out = refined.held_out;
   result.in_sample = ScoreCorrected(
-      used, camera, result.T_camera_lidar, result.lidar_bias, result.chessboard_turn_rad);
+      used, camera, result.T_camera_lidar, result.lidar_bias, result.chessboard_turn.value_rad);
   result.of_average = ScoreScene(used, camera, average.T_camera_lidar);
   result.held_out_by_cell = BinByImageCell(used, result.held_out, camera);
   result.held_out_by_range = BinByRange(used, result.held_out);
   result.predicted = PredictErrors(result.T_camera_lidar, result.covariance, camera);
   result.enough = EnoughOf(used.size(), result, task);
-  result.scene_check = CheckScene(scene_views ? scene_views(used) : std::vector<SceneView>(),
-                                  camera,
-                                  result.T_camera_lidar,
-                                  task.options.scene_check);
-  result.diagnosis = Diagnose(used,
-                              static_cast<int>(chosen.rejected.size()),
-                              task.board,
-                              camera,
-                              result.T_camera_lidar,
-                              result.covariance,
-                              result.lidar_bias.common,
-                              task.options.diagnosis);
-  AddLikelyCause(chosen, task, &result.diagnosis);
-  result.lens_correction = LensCorrectionOf(used, result, task);
+  const std::array<std::function<void()>, 3> judgements = {
+      [&] {
+        result.scene_check = CheckScene(scene_views ? scene_views(used) : std::vector<SceneView>(),
+                                        camera,
+                                        result.T_camera_lidar,
+                                        task.options.scene_check);
+      },
+      [&] { result.lens_correction = LensCorrectionOf(used, result, task); },
+      [&] {
+        result.diagnosis = Diagnose(used,
+                                    static_cast<int>(chosen.rejected.size()),
+                                    task.board,
+                                    camera,
+                                    result.T_camera_lidar,
+                                    result.covariance,
+                                    result.lidar_bias.common,
+                                    task.options.diagnosis);
+        AddLikelyCause(chosen, task, &result.diagnosis);
+      }};
+  ParallelFor(judgements.size(), [&](std::size_t i) { judgements[i](); });
   result.e_dim_mm = MedianBoardDimensionErrorMm(chosen.samples, task.board);
   result.used_ids = IdsOf(used);
   result.rejected = chosen.rejected;

@@ -11,7 +11,7 @@ Evidence EvidenceOf(const Calibration& calibration) {
   evidence.held_out_mm = calibration.held_out.centre_mm.mean;
   evidence.in_sample_mm = calibration.in_sample.centre_mm.mean;
   evidence.normal_deg = calibration.held_out.normal_deg.mean;
-  evidence.chessboard_turn_deg = kDegPerRad * calibration.chessboard_turn_rad.norm();
+  evidence.chessboard_turn_deg = kDegPerRad * calibration.chessboard_turn.value_rad.norm();
   evidence.sigma_deg = kDegPerRad * sigma.head<3>().maxCoeff();
   evidence.sigma_mm = kMmPerM * sigma.tail<3>().norm();
   evidence.num_used = static_cast<int>(calibration.used_ids.size());

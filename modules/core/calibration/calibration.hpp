@@ -53,7 +53,7 @@ struct Calibration {
   AveragedPart averaged;
   LidarBias lidar_bias;  ///< Removed from the boards before they are scored.
   /// Of all chessboards against their rays (SharedErrors), about the camera's x and y; removed too.
-  Eigen::Vector2d chessboard_turn_rad = Eigen::Vector2d::Zero();
+  ChessboardTurn chessboard_turn;
   SceneScore held_out;                      ///< Each sample by the extrinsic refined without it.
   SceneScore in_sample;                     ///< Flatters: the same samples made the extrinsic.
   SceneScore of_average;                    ///< The VOQ average on all samples.

@@ -39,8 +39,8 @@ std::vector<std::string> CameraModel::Problems() const {
 }
 
 bool CameraModel::IsInFront(const Eigen::Vector3d& point_camera_m) const {
-  return detail::WithLens(lens,
-                          [&](const auto& row) { return row.IsSeen(distortion, point_camera_m); });
+  return detail::WithLens(
+      lens, [&](const auto& row) { return detail::IsSeenBy(row, distortion, point_camera_m); });
 }
 
 bool CameraModel::IsProjectable(const Eigen::Vector3d& point_camera_m) const {

@@ -36,6 +36,11 @@ struct CameraModel {
   template <typename T>
   Eigen::Matrix<T, 2, 1> Project(const Eigen::Matrix<T, 3, 1>& point_camera_m) const;
 
+  /// The same where IsInFront, for less than both; nothing elsewhere.
+  template <typename T>
+  std::optional<Eigen::Matrix<T, 2, 1>> ProjectIfInFront(
+      const Eigen::Matrix<T, 3, 1>& point_camera_m) const;
+
   /// True where the lens brings the point's ray to a pixel: within the angles that it takes (below
   /// 90 degrees off the axis, equidistant below 180), and on the branch where the radial polynomial
   /// still grows with the angle.

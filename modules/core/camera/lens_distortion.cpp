@@ -168,8 +168,9 @@ Eigen::Matrix2d DistortJacobian(const Distortion& lens, const Eigen::Vector2d& q
 
 bool IsOnGrowingBranch(const Distortion& lens, double max_radius, const Eigen::Vector2d& q) {
   const double u = q.squaredNorm();
-  if (!(u < max_radius * max_radius) || IsPlainlyShrinking(lens, u)) return false;
+  if (!(u < max_radius * max_radius)) return false;
   if (IsPlainlyGrowing(lens, u)) return true;
+  if (IsPlainlyShrinking(lens, u)) return false;
   return Branch(lens, max_radius).Contains(q);
 }
 

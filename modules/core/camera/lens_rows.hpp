@@ -21,14 +21,17 @@ using Coefficients = std::array<double, 8>;
 // Each row has:
 //   kLens, kName, kOtherName      how it is called: ours, and by other tools
 //   kNumDistortion                how many coefficients it takes
-//   Project(k, point)             the point at focal length 1; a template, so that Jets of Ceres
-//                                 make its Jacobian
+//   PlaneFromPoint(point)         where the point is in the plane that the lens distorts; a
+//                                 template, so that Jets of Ceres make the Jacobian
+//   DistortionOf(k)               what the lens does to that plane, at focal length 1
 //   IsProjectable(point)          whether that is defined and smooth, cheaply
-//   IsSeen(k, point)              whether the lens brings the point's ray to a pixel
+//   kMaxRadius                    of the plane's points that are seen, HUGE_VAL for any
 //   Unproject(k, at)              the unit ray of a point at focal length 1
 
 /// q = x / z, y / z; OpenCV's polynomials of it.
 struct Pinhole {
+  static constexpr double kMaxRadius = HUGE_VAL;
+
   static Distortion DistortionOf(const Coefficients& k) {
     // Of plumb_bob, k[5], k[6] and k[7] are zero.
     return {{1, k[0], k[1], k[4], 0}, {1, k[5], k[6], k[7]}, k[2], k[3]};
@@ -40,18 +43,7 @@ struct Pinhole {
     return {point(0) * scale, point(1) * scale};
   }
 
-  template <typename T>
-  static Eigen::Matrix<T, 2, 1> Project(const Coefficients& k,
-                                        const Eigen::Matrix<T, 3, 1>& point) {
-    return Distort(DistortionOf(k), PlaneFromPoint(point));
-  }
-
   static bool IsProjectable(const Eigen::Vector3d& point) { return point.z() > 0.0; }
-
-  static bool IsSeen(const Coefficients& k, const Eigen::Vector3d& point) {
-    return IsProjectable(point) &&
-           IsOnGrowingBranch(DistortionOf(k), HUGE_VAL, PlaneFromPoint(point));
-  }
 
   static std::optional<Eigen::Vector3d> Unproject(const Coefficients& k,
                                                   const Eigen::Vector2d& at) {
@@ -106,19 +98,8 @@ struct Equidistant {
     return {point(0) * scale, point(1) * scale};
   }
 
-  template <typename T>
-  static Eigen::Matrix<T, 2, 1> Project(const Coefficients& k,
-                                        const Eigen::Matrix<T, 3, 1>& point) {
-    return Distort(DistortionOf(k), PlaneFromPoint(point));
-  }
-
   static bool IsProjectable(const Eigen::Vector3d& point) {
     return point.z() > 0.0 || !IsOnAxis(point);
-  }
-
-  static bool IsSeen(const Coefficients& k, const Eigen::Vector3d& point) {
-    return IsProjectable(point) &&
-           IsOnGrowingBranch(DistortionOf(k), kMaxRadius, PlaneFromPoint(point));
   }
 
   static std::optional<Eigen::Vector3d> Unproject(const Coefficients& k,
@@ -142,6 +123,44 @@ auto WithLens(LensModel lens, const Use& use) {
     if (lens != Row::kLens) return WithLens<I + 1>(lens, use);
   }
   return use(Row{});
+}
+
+/// The number itself, and that of a Jet.
+inline double ValueOf(double number) { return number; }
+template <typename Jet>
+double ValueOf(const Jet& jet) {
+  return jet.a;
+}
+
+/// Where the row's lens brings a point, at focal length 1.
+template <typename Row, typename T>
+Eigen::Matrix<T, 2, 1> ProjectBy(const Row& /*row*/,
+                                 const Coefficients& k,
+                                 const Eigen::Matrix<T, 3, 1>& point) {
+  return Distort(Row::DistortionOf(k), Row::PlaneFromPoint(point));
+}
+
+/// Whether it brings the point's ray to a pixel.
+template <typename Row>
+bool IsSeenBy(const Row& /*row*/, const Coefficients& k, const Eigen::Vector3d& point) {
+  return Row::IsProjectable(point) &&
+         IsOnGrowingBranch(Row::DistortionOf(k), Row::kMaxRadius, Row::PlaneFromPoint(point));
+}
+
+/// ProjectBy where IsSeenBy.
+template <typename Row, typename T>
+std::optional<Eigen::Matrix<T, 2, 1>> ProjectIfSeenBy(const Row& /*row*/,
+                                                      const Coefficients& k,
+                                                      const Eigen::Matrix<T, 3, 1>& point) {
+  if (!Row::IsProjectable({ValueOf(point(0)), ValueOf(point(1)), ValueOf(point(2))})) {
+    return std::nullopt;
+  }
+  const Distortion distortion = Row::DistortionOf(k);
+  const Eigen::Matrix<T, 2, 1> q = Row::PlaneFromPoint(point);
+  if (!IsOnGrowingBranch(distortion, Row::kMaxRadius, {ValueOf(q(0)), ValueOf(q(1))})) {
+    return std::nullopt;
+  }
+  return Distort(distortion, q);
 }
 
 }  // namespace voqcal::detail

@@ -5,6 +5,20 @@
 #include <ceres/jet.h>
 
 namespace voqcal {
+namespace {
+
+using Jet = ceres::Jet<double, 3>;
+
+Eigen::Matrix<Jet, 3, 1> JetsOf(const Eigen::Vector3d& point_m) {
+  return {Jet(point_m[0], 0), Jet(point_m[1], 1), Jet(point_m[2], 2)};
+}
+
+Eigen::Vector2d Split(const Eigen::Matrix<Jet, 2, 1>& pixel, Matrix23d* J_px_point) {
+  for (int i = 0; i < 2; ++i) J_px_point->row(i) = pixel[i].v.transpose();
+  return {pixel[0].a, pixel[1].a};
+}
+
+}  // namespace
 
 Eigen::Matrix3d LeftJacobianSO3(const Eigen::Vector3d& omega_rad) {
   // The closed form given by Sola et al. 2018, "A micro Lie theory", arXiv:1812.01537.
@@ -42,12 +56,16 @@ Eigen::Vector2d ProjectWithJacobian(const CameraModel& camera,
                                     const Eigen::Vector3d& point_camera_m,
                                     Matrix23d* J_px_point) {
   if (J_px_point == nullptr) return camera.Project(point_camera_m);
-  using Jet = ceres::Jet<double, 3>;
-  Eigen::Matrix<Jet, 3, 1> point;
-  for (int i = 0; i < 3; ++i) point[i] = Jet(point_camera_m[i], i);
-  const Eigen::Matrix<Jet, 2, 1> pixel = camera.Project(point);
-  for (int i = 0; i < 2; ++i) J_px_point->row(i) = pixel[i].v.transpose();
-  return {pixel[0].a, pixel[1].a};
+  return Split(camera.Project(JetsOf(point_camera_m)), J_px_point);
+}
+
+std::optional<Eigen::Vector2d> ProjectIfInFront(const CameraModel& camera,
+                                                const Eigen::Vector3d& point_camera_m,
+                                                Matrix23d* J_px_point) {
+  if (J_px_point == nullptr) return camera.ProjectIfInFront(point_camera_m);
+  const auto pixel = camera.ProjectIfInFront(JetsOf(point_camera_m));
+  if (!pixel) return std::nullopt;
+  return Split(*pixel, J_px_point);
 }
 
 }  // namespace voqcal

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -37,5 +39,11 @@ class LeftPerturbation {
 Eigen::Vector2d ProjectWithJacobian(const CameraModel& camera,
                                     const Eigen::Vector3d& point_camera_m,
                                     Matrix23d* J_px_point);
+
+/// The same where the point is in front of the camera (IsInFront), for less than both; nothing
+/// elsewhere.
+std::optional<Eigen::Vector2d> ProjectIfInFront(const CameraModel& camera,
+                                                const Eigen::Vector3d& point_camera_m,
+                                                Matrix23d* J_px_point);
 
 }  // namespace voqcal

@@ -1,7 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
+
+#include <Eigen/Core>
 
 #include "core/board/board_sample.hpp"
 #include "core/geometry/rigid.hpp"
@@ -60,6 +64,13 @@ struct SharedErrors {
   double chessboard_turn_y_rad = 0.0;
 };
 
+/// Both chessboard_turns as estimated.
+struct ChessboardTurn {
+  Eigen::Vector2d value_rad = Eigen::Vector2d::Zero();
+  Eigen::Vector2d standard_error_rad =
+      Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());  ///< NaN: not estimated.
+};
+
 /// 1 sigma of a chessboard_turn before the data speak: a principal point that is 10 px off, of a
 /// focal length of 1000.
 constexpr double kPriorChessboardTurnRad = 0.01;
@@ -76,11 +87,15 @@ struct ErrorPriors {
   SharedErrors shared = kPriorSharedErrors;
 };
 
+/// 1 sigma of the chessboard_turn between two cameras: the fit knows of the second's alone, and the
+/// first's has its form as far as the cameras look the same way.
+constexpr double kPriorTurnBetweenCamerasRad = M_SQRT2 * kPriorChessboardTurnRad;
+
 /// Of two cameras: by order of magnitude what a lens model's errors do to a board. They have none
 /// of a lidar's shared errors.
 constexpr ErrorPriors kCameraErrorPriors{
     {0.003, 0.001, 0.001, 0.005, 0.001},
-    {1e-6, 1e-6, 1e-6, kPriorChessboardTurnRad, kPriorChessboardTurnRad}};
+    {1e-6, 1e-6, 1e-6, kPriorTurnBetweenCamerasRad, kPriorTurnBetweenCamerasRad}};
 
 /// How one board's covariance grows with the square of each error, in the order of the struct.
 std::array<Matrix6d, kNumSightingErrors> UnitCovariances(const BoardPose& pose_camera,

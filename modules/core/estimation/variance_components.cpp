@@ -157,6 +157,12 @@ SharedErrors MixedFit::SharedAt(const Eigen::Isometry3d& T_camera_lidar_given) c
                     by_extrinsic * DifferenceLeft(T_camera_lidar, T_camera_lidar_given));
 }
 
+ChessboardTurn MixedFit::ChessboardTurnAt(const Eigen::Isometry3d& T_camera_lidar_given) const {
+  const SharedErrors at = SharedAt(T_camera_lidar_given);
+  return {{at.chessboard_turn_x_rad, at.chessboard_turn_y_rad},
+          covariance.diagonal().tail<2>().cwiseSqrt()};
+}
+
 MixedDifference DifferenceOf(const BoardSample& sample,
                              const CameraModel& camera,
                              const MixedFit& fit) {

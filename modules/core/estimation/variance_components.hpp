@@ -31,6 +31,8 @@ struct MixedFit {
   Matrix6d ExtrinsicCovariance() const { return covariance.topLeftCorner<6, 6>(); }
   /// The shared errors if the extrinsic is a given one, near the fit's.
   SharedErrors SharedAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
+  /// Of them, with its standard error as for the fit's own extrinsic.
+  ChessboardTurn ChessboardTurnAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
 };
 
 /// PoseDifference with the errors of `fit`: those that are shared taken out, the others in C.

@@ -15,17 +15,17 @@ constexpr double kPriorRad = 0.5;
 constexpr double kPriorM = 0.5;
 
 Eigen::VectorXd FaultsOf(const LidarBias& bias, Eigen::Index num_faults) {
-  Eigen::VectorXd faults_m = Eigen::VectorXd::Zero(num_faults);
-  faults_m[kCommon] = bias.common.value_m;
-  faults_m[kDarkStep] = bias.dark_step.value_m;
-  faults_m[kLift] = bias.outline_lift.value_m;
-  faults_m[kRise] = bias.outline_rise.value_m;
+  Eigen::VectorXd faults = Eigen::VectorXd::Zero(num_faults);
+  faults[kCommon] = bias.common.value_m;
+  faults[kDarkStep] = bias.dark_step.value_m;
+  faults[kLift] = bias.outline_lift.value_m;
+  faults[kRise] = bias.outline_rise.value_m;
   const auto num_rings = std::min(num_faults - kFirstRing - kNumChessboardTurns,
                                   static_cast<Eigen::Index>(bias.rings.size()));
   for (Eigen::Index i = 0; i < num_rings; ++i) {
-    faults_m[kFirstRing + i] = bias.rings[static_cast<std::size_t>(i)].value_m;
+    faults[kFirstRing + i] = bias.rings[static_cast<std::size_t>(i)].value_m;
   }
-  return faults_m;
+  return faults;
 }
 
 // Unless the likelihood was there and told, all.
@@ -63,12 +63,12 @@ Eigen::MatrixXd ExtrinsicInformation::InformationOf(const std::vector<const Boar
                                                     const LikelihoodNoise& noise) const {
   LikelihoodState state;
   state.T_camera_lidar = belief_.T_camera_lidar;
-  state.faults_m = FaultsOf(bias, num_faults_);
-  state.num_lens = kNumChessboardTurns;
+  state.faults = FaultsOf(bias, num_faults_);
+  state.num_camera_faults = kNumChessboardTurns;
   std::vector<LikelihoodPose> poses;
   for (const BoardSample* sample : samples) {
     poses.push_back(MakeLikelihoodPose(*sample, bias.shades, belief_.T_camera_lidar));
-    poses.back().lens = ChessboardTurnTerms();
+    poses.back().camera_faults = ChessboardTurnTerms();
     state.T_camera_board.push_back(poses.back().T_camera_board);
   }
   return Eliminate(poses, state, noise).information;

@@ -22,7 +22,7 @@ LidarBias BiasOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covarian
   const auto estimate = [&](Eigen::Index fault) {
     const Eigen::Index i = kExtrinsicSize + fault;
     return BiasEstimate{
-        search.state().faults_m[fault], std::sqrt(covariance(i, i)), search.IsFree(fault)};
+        search.state().faults[fault], std::sqrt(covariance(i, i)), search.IsFree(fault)};
   };
   LidarBias bias;
   bias.common = estimate(kCommon);
@@ -39,7 +39,7 @@ LidarBias BiasOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covarian
 Eigen::Matrix<double, Eigen::Dynamic, 6> FaultsByExtrinsic(const LikelihoodSearch& search,
                                                            const Eigen::MatrixXd& covariance) {
   const Matrix6d of_extrinsic = covariance.topLeftCorner<6, 6>();
-  const Eigen::Index num_faults = search.state().faults_m.size();
+  const Eigen::Index num_faults = search.state().faults.size();
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_extrinsic =
       covariance.block(kExtrinsicSize, 0, num_faults, kExtrinsicSize) * of_extrinsic.inverse();
   for (Eigen::Index i = 0; i < num_faults; ++i) {
@@ -48,24 +48,24 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> FaultsByExtrinsic(const LikelihoodSearc
   return by_extrinsic;
 }
 
-LensUnknowns LensUnknownsOf(const LikelihoodSearch& search, const Eigen::MatrixXd& covariance) {
-  const Eigen::Index num_lens = search.state().num_lens;
-  LensUnknowns unknowns;
-  unknowns.values = search.state().faults_m.tail(num_lens);
-  unknowns.standard_errors = covariance.diagonal().tail(num_lens).cwiseSqrt();
-  for (Eigen::Index i = 0; i < num_lens; ++i) {
-    unknowns.is_observable.push_back(search.IsFree(kFirstRing + search.state().NumRings() + i));
+CameraFaultEstimates CameraFaultEstimatesOf(const LikelihoodSearch& search,
+                                            const Eigen::MatrixXd& covariance) {
+  const LikelihoodState& state = search.state();
+  CameraFaultEstimates faults;
+  faults.values = state.CameraFaults();
+  faults.standard_errors = covariance.diagonal().tail(state.num_camera_faults).cwiseSqrt();
+  for (Eigen::Index i = 0; i < state.num_camera_faults; ++i) {
+    faults.is_observable.push_back(search.IsFree(state.NumLidarFaults() + i));
   }
-  return unknowns;
+  return faults;
 }
 
-LensEstimate LensEstimateOf(const LensUnknowns& unknowns) {
+LensEstimate LensEstimateOf(const CameraFaultEstimates& faults) {
   LensEstimate lens;
-  if (unknowns.values.size() == 0) return lens;  // of too few samples
-  lens.errors = unknowns.values;
-  lens.standard_errors = unknowns.standard_errors;
-  std::copy(
-      unknowns.is_observable.begin(), unknowns.is_observable.end(), lens.is_observable.begin());
+  if (faults.values.size() == 0) return lens;  // of too few samples
+  lens.errors = faults.values;
+  lens.standard_errors = faults.standard_errors;
+  std::copy(faults.is_observable.begin(), faults.is_observable.end(), lens.is_observable.begin());
   return lens;
 }
 
@@ -99,7 +99,7 @@ std::vector<LikelihoodPose> PosesOf(const std::vector<const BoardSample*>& sampl
   std::vector<LikelihoodPose> poses;
   for (const BoardSample* sample : samples) {
     poses.push_back(MakeLikelihoodPose(*sample, shades, T_camera_lidar));
-    poses.back().lens = ChessboardTurnTerms();
+    poses.back().camera_faults = ChessboardTurnTerms();
   }
   return poses;
 }
@@ -112,8 +112,8 @@ std::vector<LikelihoodPose> PosesWithLens(const std::vector<const BoardSample*>&
                                           const LikelihoodOptions& options) {
   std::vector<LikelihoodPose> poses = PosesOf(samples, shades, T_camera_lidar);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    poses[i].lens =
-        LensTermsOf(*samples[i], board, camera, options.lens_error, options.corner_error_px);
+    poses[i].camera_faults =
+        LensErrorTerms(*samples[i], board, camera, options.lens_error, options.corner_error_px);
   }
   return poses;
 }
@@ -150,9 +150,9 @@ LikelihoodExtrinsic RefinePoses(std::vector<LikelihoodPose> poses,
   refined.uncertainty = UncertaintyOf(search, equations, camera, options);
   refined.bias = BiasOf(search, covariance);
   refined.bias.shades = shades;
-  refined.faults_m = search.state().faults_m.head(kFirstRing + search.state().NumRings());
+  refined.lidar_faults = search.state().faults.head(search.state().NumLidarFaults());
   refined.faults_by_extrinsic = FaultsByExtrinsic(search, covariance);
-  refined.lens_unknowns = LensUnknownsOf(search, covariance);
+  refined.camera_faults = CameraFaultEstimatesOf(search, covariance);
   refined.noise = search.noise();
   AddResiduals(search, &refined);
   refined.status = RefineStatus::kConverged;
@@ -166,16 +166,16 @@ LikelihoodExtrinsic RefinePosesNearby(std::vector<LikelihoodPose> poses,
   refined.status = RefineStatus::kDegenerate;
   if (poses.size() < kLeastSamples) return refined;
   LikelihoodSearch search(std::move(poses), nearby.T_camera_lidar, options);
-  search.StartFrom(nearby.bias, nearby.lens_unknowns, nearby.noise);
+  search.StartFrom(nearby.bias, nearby.camera_faults, nearby.noise);
   refined.status = RefineStatus::kNotConverged;
   if (!search.Minimise(options.max_iterations, kSettledNearby)) return refined;
   if (!search.IsPhysical()) return refined;
   const LikelihoodState& state = search.state();
   refined.T_camera_lidar = state.T_camera_lidar;
-  const Eigen::Index num_faults = kFirstRing + state.NumRings();
-  refined.faults_m.head(num_faults) = state.faults_m.head(num_faults);
-  SetFaults(refined.faults_m, &refined.bias);
-  refined.lens_unknowns.values = state.faults_m.tail(state.num_lens);
+  const Eigen::Index num_lidar_faults = state.NumLidarFaults();
+  refined.lidar_faults.head(num_lidar_faults) = state.faults.head(num_lidar_faults);
+  SetFaults(refined.lidar_faults, &refined.bias);
+  refined.camera_faults.values = state.CameraFaults();
   refined.status = RefineStatus::kConverged;
   return refined;
 }
@@ -216,7 +216,7 @@ LikelihoodExtrinsic RefineWithLens(const std::vector<const BoardSample*>& sample
                   camera,
                   T_camera_lidar_start,
                   options);
-  refined.lens = LensEstimateOf(refined.lens_unknowns);
+  refined.lens = LensEstimateOf(refined.camera_faults);
   return refined;
 }
 
@@ -230,7 +230,7 @@ LikelihoodExtrinsic RefineWithLensNearby(const std::vector<const BoardSample*>& 
       PosesWithLens(samples, board, camera, nearby.bias.shades, nearby.T_camera_lidar, options),
       nearby,
       options);
-  refined.lens = LensEstimateOf(refined.lens_unknowns);
+  refined.lens = LensEstimateOf(refined.camera_faults);
   return refined;
 }
 

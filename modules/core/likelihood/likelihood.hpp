@@ -36,8 +36,8 @@ LikelihoodExtrinsic RefineNearby(const std::vector<const BoardSample*>& samples,
 
 /// As RefineByLikelihood, with the errors of the intrinsics (LensErrors) unknown too: each
 /// chessboard's pose answers to them, and what its corners are off in the image tells of them
-/// (LensTerms). The extrinsic goes with CorrectedCamera, not with `camera`: the principal point and
-/// the rotation make up for one another.
+/// (CameraFaultTerms). The extrinsic goes with CorrectedCamera, not with `camera`: the principal
+/// point and the rotation make up for one another.
 LikelihoodExtrinsic RefineWithLens(const std::vector<const BoardSample*>& samples,
                                    const BoardSpec& board,
                                    const CameraModel& camera,

@@ -65,9 +65,10 @@ void AddOutline(const OutlineDifference& outline,
   equations->pull.head<kNumDense>() -= J.transpose() * (weight * residual);
 }
 
-// How far the board is from where the chessboard's pixels put it, and what they say of the lens:
+// How far the board is from where the chessboard's pixels put it, and what they say of
+// the camera's faults l:
 //     r = (T_camera_board - its pose by the chessboard) - S l
-// with the names of LensTerms. The difference's derivative by the perturbation is taken as
+// with the names of CameraFaultTerms. The difference's derivative by the perturbation is taken as
 // identity: they differ by half the tilt from the chessboard's pose, thousandths of a radian.
 void AddChessboard(const LikelihoodPose& pose,
                    const LikelihoodState& state,
@@ -79,16 +80,17 @@ void AddChessboard(const LikelihoodPose& pose,
       information * DifferenceLeft(state.ByChessboard(pose), state.T_camera_board[index]);
   equations->information.block<6, 6>(kBoardIndex, kBoardIndex) += information;
   equations->pull.segment<6>(kBoardIndex) -= weighted;
-  const Eigen::Index n = state.num_lens;
+  const Eigen::Index n = state.num_camera_faults;
   if (n == 0) return;
-  const auto& S = pose.lens.board_by_lens;
-  const Eigen::Index lens = equations->pull.size() - n;
-  const Eigen::MatrixXd to_lens = information * S;
-  equations->information.block(kBoardIndex, lens, 6, n) -= to_lens;
-  equations->information.block(lens, kBoardIndex, n, 6) -= to_lens.transpose();
-  equations->information.block(lens, lens, n, n) += S.transpose() * to_lens + pose.lens.information;
+  const CameraFaultTerms& terms = pose.camera_faults;
+  const auto& S = terms.board_by_faults;
+  const Eigen::Index first = equations->pull.size() - n;
+  const Eigen::MatrixXd to_faults = information * S;
+  equations->information.block(kBoardIndex, first, 6, n) -= to_faults;
+  equations->information.block(first, kBoardIndex, n, 6) -= to_faults.transpose();
+  equations->information.block(first, first, n, n) += S.transpose() * to_faults + terms.information;
   equations->pull.tail(n) +=
-      S.transpose() * weighted + pose.lens.pull - pose.lens.information * state.faults_m.tail(n);
+      S.transpose() * weighted + terms.pull - terms.information * state.CameraFaults();
 }
 
 // The rows of a pose's unknowns that are shared.
@@ -121,20 +123,19 @@ Matrix6d CameraCovariance(const LikelihoodPose& pose, const LikelihoodNoise& noi
   covariance.diagonal().head<3>().array() += kLeastTurnRad * kLeastTurnRad;
   covariance.diagonal().tail<3>().array() += kLeastAcrossM * kLeastAcrossM;
   // Across the ray and about the normal the pixels hold the board.
-  const double along_ray_m = noise.errors.along_ray_m;
-  const double tilt_rad = noise.errors.tilt_rad;
   const Eigen::Vector3d ray = pose.T_camera_board.translation().normalized();
   const Eigen::Vector3d normal = pose.T_camera_board.linear().col(2);
-  covariance.bottomRightCorner<3, 3>() += along_ray_m * along_ray_m * ray * ray.transpose();
+  covariance.bottomRightCorner<3, 3>() +=
+      noise.along_ray_m * noise.along_ray_m * ray * ray.transpose();
   covariance.topLeftCorner<3, 3>() +=
-      tilt_rad * tilt_rad * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+      noise.tilt_rad * noise.tilt_rad * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
   return covariance;
 }
 
 Eigen::Matrix3d OutlineCovariance(const LikelihoodPose& pose, const LikelihoodNoise& noise) {
   Eigen::Matrix3d covariance = pose.outline.covariance;
-  covariance.diagonal().head<2>().array() += noise.errors.level_m * noise.errors.level_m;
-  covariance(2, 2) += noise.errors.turn_rad * noise.errors.turn_rad;
+  covariance.diagonal().head<2>().array() += noise.across_ray_m * noise.across_ray_m;
+  covariance(2, 2) += noise.turn_rad * noise.turn_rad;
   return covariance;
 }
 
@@ -157,7 +158,7 @@ PoseEquations EquationsOfReturns(const LikelihoodPose& pose,
                                  std::size_t index,
                                  double range_sigma_m) {
   const Eigen::Index num_rings = state.NumRings();
-  const Eigen::Index num_unknowns = kNumDense + num_rings + state.num_lens;
+  const Eigen::Index num_unknowns = kNumDense + num_rings + state.num_camera_faults;
   Matrix312d J_plane;
   const Eigen::Vector3d plane = PlaneInLidar(state.At(index), &J_plane);
   const ReturnSums sums = SumReturns(pose, state, plane, range_sigma_m);
@@ -202,7 +203,7 @@ SharedEquations Eliminate(const std::vector<LikelihoodPose>& poses,
                           const LikelihoodState& state,
                           const LikelihoodNoise& noise,
                           const std::vector<PoseEquations>& returns) {
-  const Eigen::Index num_shared = kExtrinsicSize + state.faults_m.size();
+  const Eigen::Index num_shared = kExtrinsicSize + state.faults.size();
   SharedEquations shared{
       Eigen::MatrixXd::Zero(num_shared, num_shared), Eigen::VectorXd::Zero(num_shared), {}};
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -12,8 +12,9 @@
 
 namespace voqcal {
 
-/// The shared unknowns: [extrinsic's perturbation (6); faults]. The faults in their order, after
-/// the rings what the poses' LensTerms ask for:
+/// The shared unknowns: [extrinsic's perturbation (6); faults]. The faults are the lidar's, in this
+/// order, each scan line's from kFirstRing on, and after them the camera's, which the poses'
+/// CameraFaultTerms ask for.
 constexpr Eigen::Index kExtrinsicSize = 6;
 constexpr Eigen::Index kCommon = 0;
 constexpr Eigen::Index kDarkStep = 1;
@@ -24,23 +25,26 @@ constexpr Eigen::Index kFirstRing = 4;
 /// Where the search stands.
 struct LikelihoodState {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  /// The rise: metres a metre; the lens' errors: shares; the chessboards' turn: radians.
-  Eigen::VectorXd faults_m;
-  Eigen::Index num_lens = 0;  ///< How many of the faults are of the LensTerms.
+  /// The lidar's: metres, of the rise metres a metre; the camera's: shares of LensErrors, or
+  /// radians of the chessboards' turn.
+  Eigen::VectorXd faults;
+  Eigen::Index num_camera_faults = 0;
   std::vector<Eigen::Isometry3d> T_camera_board;
 
-  Eigen::Index NumRings() const { return faults_m.size() - kFirstRing - num_lens; }
-  /// Where the chessboard's pixels put the board, with the lens as it is.
+  Eigen::Index NumLidarFaults() const { return faults.size() - num_camera_faults; }
+  Eigen::Index NumRings() const { return NumLidarFaults() - kFirstRing; }
+  Eigen::VectorXd CameraFaults() const { return faults.tail(num_camera_faults); }
+  /// Where the chessboard's pixels put the board, with the camera's faults as they are.
   Eigen::Isometry3d ByChessboard(const LikelihoodPose& pose) const {
-    if (num_lens == 0) return pose.T_camera_board;
-    return PerturbLeft(pose.T_camera_board, pose.lens.board_by_lens * faults_m.tail(num_lens));
+    if (num_camera_faults == 0) return pose.T_camera_board;
+    return PerturbLeft(pose.T_camera_board, pose.camera_faults.board_by_faults * CameraFaults());
   }
   double OffsetM(const BoardReturn& seen) const {
-    return faults_m[kCommon] + faults_m[kDarkStep] * seen.shade +
-           faults_m[kFirstRing + static_cast<Eigen::Index>(seen.ring)];
+    return faults[kCommon] + faults[kDarkStep] * seen.shade +
+           faults[kFirstRing + static_cast<Eigen::Index>(seen.ring)];
   }
   double LiftM(const OutlineRays& outline) const {
-    return faults_m[kLift] + faults_m[kRise] * outline.T_lidar_board.translation().norm();
+    return faults[kLift] + faults[kRise] * outline.T_lidar_board.translation().norm();
   }
   BoardAndLidar At(std::size_t pose) const { return {T_camera_lidar, T_camera_board[pose]}; }
 };
@@ -60,7 +64,8 @@ PoseEquations EquationsOfReturns(const LikelihoodPose& pose,
                                  std::size_t index,
                                  double range_sigma_m);
 
-/// The outline's residual, and its derivative by a pose's unknowns but the rings and the lens.
+/// The outline's residual, and its derivative by a pose's unknowns but the rings and the
+/// camera's faults.
 struct OutlineDifference {
   Eigen::Vector3d residual;
   Eigen::Matrix<double, 3, 12 + kFirstRing> J;

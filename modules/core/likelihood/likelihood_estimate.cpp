@@ -10,14 +10,14 @@
 
 namespace voqcal {
 
-void SetFaults(const Eigen::VectorXd& faults_m, LidarBias* bias) {
-  bias->common.value_m = faults_m[kCommon];
-  bias->dark_step.value_m = faults_m[kDarkStep];
-  bias->outline_lift.value_m = faults_m[kLift];
-  bias->outline_rise.value_m = faults_m[kRise];
+void SetFaults(const Eigen::VectorXd& lidar_faults, LidarBias* bias) {
+  bias->common.value_m = lidar_faults[kCommon];
+  bias->dark_step.value_m = lidar_faults[kDarkStep];
+  bias->outline_lift.value_m = lidar_faults[kLift];
+  bias->outline_rise.value_m = lidar_faults[kRise];
   for (std::size_t i = 0; i < bias->rings.size(); ++i) {
     const Eigen::Index fault = kFirstRing + static_cast<Eigen::Index>(i);
-    if (fault < faults_m.size()) bias->rings[i].value_m = faults_m[fault];
+    if (fault < lidar_faults.size()) bias->rings[i].value_m = lidar_faults[fault];
   }
 }
 
@@ -26,19 +26,20 @@ bool LensEstimate::IsObservable() const {
 }
 
 LidarBias LikelihoodExtrinsic::BiasAt(const Eigen::Isometry3d& T_camera_lidar_given) const {
-  if (faults_m.size() == 0) return bias;  // as a message brings it: it goes with its extrinsic
-  const Eigen::VectorXd moves_m = faults_by_extrinsic.topRows(faults_m.size()) *
-                                  DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
+  if (lidar_faults.size() == 0) return bias;  // as a message brings it: it goes with its extrinsic
+  const Eigen::VectorXd moves = faults_by_extrinsic.topRows(lidar_faults.size()) *
+                                DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
   LidarBias moved = bias;
-  SetFaults(faults_m + moves_m, &moved);
+  SetFaults(lidar_faults + moves, &moved);
   return moved;
 }
 
-Eigen::Vector2d LikelihoodExtrinsic::ChessboardTurnAt(
+ChessboardTurn LikelihoodExtrinsic::ChessboardTurnAt(
     const Eigen::Isometry3d& T_camera_lidar_given) const {
-  if (lens_unknowns.values.size() != kNumChessboardTurns) return Eigen::Vector2d::Zero();
-  return lens_unknowns.values + faults_by_extrinsic.bottomRows(kNumChessboardTurns) *
-                                    DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
+  if (camera_faults.values.size() != kNumChessboardTurns) return {};
+  const Eigen::Vector2d move_rad = faults_by_extrinsic.bottomRows(kNumChessboardTurns) *
+                                   DifferenceLeft(T_camera_lidar, T_camera_lidar_given);
+  return {camera_faults.values + move_rad, camera_faults.standard_errors};
 }
 
 std::string LikelihoodExtrinsic::Summary() const {

@@ -18,8 +18,11 @@ namespace voqcal {
 /// Noise levels that the residuals show; as they start, where there are no residuals.
 struct LikelihoodNoise {
   double range_m = 0.01;  ///< 1 sigma of one return along its ray.
-  /// Of each sighting, once the lidar's faults are taken out; across the ray alike both ways.
-  SightingErrors errors{0.003, 0.001, 0.001, 0.005, 0.003};
+  // Of each sighting, beyond the detectors' covariances and once the lidar's faults are taken out:
+  double along_ray_m = 0.003;   ///< Of the chessboard's centre.
+  double across_ray_m = 0.001;  ///< Of the outline's centre, each way alike.
+  double tilt_rad = 0.005;      ///< Of the chessboard's normal, in each direction.
+  double turn_rad = 0.003;      ///< Of the outline, about the normal.
 };
 
 /// How far the extrinsic may be off, 1 sigma of [rotation_rad; translation_m] perturbed on the left
@@ -45,8 +48,8 @@ struct LensEstimate {
   bool IsObservable() const;  ///< Any of them.
 };
 
-/// What the poses' LensTerms ask for, in their order.
-struct LensUnknowns {
+/// What the poses' CameraFaultTerms ask for, in their order and units.
+struct CameraFaultEstimates {
   Eigen::VectorXd values;
   Eigen::VectorXd standard_errors;
   std::vector<bool> is_observable;
@@ -58,11 +61,13 @@ struct LikelihoodExtrinsic {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
   LikelihoodUncertainty uncertainty;
   LidarBias bias;
-  Eigen::VectorXd faults_m;  ///< The bias, in the order of LikelihoodState; empty: not known.
-  /// How they, and after them lens_unknowns, follow a given extrinsic: by [rotation_rad;
+  /// The bias, in the order and units of LikelihoodState; empty: not known.
+  Eigen::VectorXd lidar_faults;
+  /// How they, and after them camera_faults, follow a given extrinsic: by [rotation_rad;
   /// translation_m], left side.
   Eigen::Matrix<double, Eigen::Dynamic, 6> faults_by_extrinsic;
-  LensUnknowns lens_unknowns;  ///< The chessboards' turn (ChessboardTurnTerms), or all of the lens.
+  CameraFaultEstimates
+      camera_faults;  ///< The chessboards' turn (ChessboardTurnTerms), or LensErrors.
   LensEstimate lens;  ///< RefineWithLens'; the extrinsic then goes with the corrected camera.
   LikelihoodNoise noise;
   double range_rms_m = std::numeric_limits<double>::quiet_NaN();   ///< Of all returns.
@@ -73,13 +78,13 @@ struct LikelihoodExtrinsic {
   bool IsUsable() const { return status == RefineStatus::kConverged; }
   /// The most likely bias if that is the extrinsic; to first order.
   LidarBias BiasAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
-  /// The same of the chessboards' turn (SharedErrors), about the camera's x and y; zero where all
-  /// of the lens was asked for, or nothing is known.
-  Eigen::Vector2d ChessboardTurnAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
+  /// The same of the chessboards' turn; not estimated where LensErrors were asked for, or nothing
+  /// is known. Its standard error is as for the likelihood's own extrinsic, as the bias' are.
+  ChessboardTurn ChessboardTurnAt(const Eigen::Isometry3d& T_camera_lidar_given) const;
   std::string Summary() const;  ///< One line for a log.
 };
 
 /// Puts the faults' values into `bias`; which of them are observable, and how well, stays.
-void SetFaults(const Eigen::VectorXd& faults_m, LidarBias* bias);
+void SetFaults(const Eigen::VectorXd& lidar_faults, LidarBias* bias);
 
 }  // namespace voqcal

@@ -12,18 +12,35 @@
 namespace voqcal {
 namespace {
 
-SightingErrors PriorErrors(const LikelihoodOptions& options) {
-  return {options.camera_error_m,
-          options.outline_error_m,
-          options.outline_error_m,
-          options.camera_error_rad,
-          options.outline_error_rad};
+// The squares of LikelihoodNoise's four of a sighting.
+enum SightingNoise : std::size_t { kAlongRay, kAcrossRay, kTilt, kTurn, kNumSightingNoises };
+using Variances = std::array<double, kNumSightingNoises>;
+
+Variances PriorVariances(const LikelihoodOptions& options) {
+  return {options.camera_error_m * options.camera_error_m,
+          options.outline_error_m * options.outline_error_m,
+          options.camera_error_rad * options.camera_error_rad,
+          options.outline_error_rad * options.outline_error_rad};
+}
+
+Variances VariancesOf(const LikelihoodNoise& noise) {
+  return {noise.along_ray_m * noise.along_ray_m,
+          noise.across_ray_m * noise.across_ray_m,
+          noise.tilt_rad * noise.tilt_rad,
+          noise.turn_rad * noise.turn_rad};
+}
+
+void SetVariances(const Variances& variances, LikelihoodNoise* noise) {
+  noise->along_ray_m = std::sqrt(variances[kAlongRay]);
+  noise->across_ray_m = std::sqrt(variances[kAcrossRay]);
+  noise->tilt_rad = std::sqrt(variances[kTilt]);
+  noise->turn_rad = std::sqrt(variances[kTurn]);
 }
 
 // r'P U P r and tr(P U) of each variance's unit U, with the names of FitWithErrors.
 struct Evidence {
-  SightingVariances squares{};
-  SightingVariances traces{};
+  Variances squares{};
+  Variances traces{};
 };
 
 // The shared unknowns' step to the minimum, and what is then known of them.
@@ -74,22 +91,25 @@ void AddChessboard(const LikelihoodPose& pose,
                    const BoardPosterior& board,
                    const LikelihoodNoise& noise,
                    Evidence* evidence) {
-  Eigen::Matrix<double, 6, Eigen::Dynamic> by_lens =
+  const Eigen::Index num_camera_faults = state.num_camera_faults;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> by_shared =
       Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, board.by_shared.cols());
-  if (state.num_lens > 0) by_lens.rightCols(state.num_lens) = -pose.lens.board_by_lens;
+  if (num_camera_faults > 0) {
+    by_shared.rightCols(num_camera_faults) = -pose.camera_faults.board_by_faults;
+  }
   const Left<6> left(DifferenceLeft(state.ByChessboard(pose), state.T_camera_board[index]),
                      Matrix6d::Identity(),
-                     by_lens,
+                     by_shared,
                      CameraCovariance(pose, noise).inverse(),
                      board);
   const Eigen::Vector3d ray = pose.T_camera_board.translation().normalized();
   const Eigen::Vector3d normal = pose.T_camera_board.linear().col(2);
   const Eigen::Vector3d turn = left.Pr.head<3>();
   const Eigen::Matrix3d P_turn = left.P.topLeftCorner<3, 3>();
-  evidence->squares[kAlongRayError] += std::pow(ray.dot(left.Pr.tail<3>()), 2);
-  evidence->traces[kAlongRayError] += ray.dot(left.P.bottomRightCorner<3, 3>() * ray);
-  evidence->squares[kTiltError] += turn.squaredNorm() - std::pow(normal.dot(turn), 2);
-  evidence->traces[kTiltError] += P_turn.trace() - normal.dot(P_turn * normal);
+  evidence->squares[kAlongRay] += std::pow(ray.dot(left.Pr.tail<3>()), 2);
+  evidence->traces[kAlongRay] += ray.dot(left.P.bottomRightCorner<3, 3>() * ray);
+  evidence->squares[kTilt] += turn.squaredNorm() - std::pow(normal.dot(turn), 2);
+  evidence->traces[kTilt] += P_turn.trace() - normal.dot(P_turn * normal);
 }
 
 void AddOutline(const LikelihoodPose& pose,
@@ -108,28 +128,26 @@ void AddOutline(const LikelihoodPose& pose,
                      by_shared,
                      OutlineCovariance(pose, noise).inverse(),
                      board);
-  evidence->squares[kLevelError] += left.Pr.head<2>().squaredNorm();
-  evidence->traces[kLevelError] += left.P.topLeftCorner<2, 2>().trace();
-  // The scan lines' errors are among the faults: what is left is alike both ways.
-  evidence->squares[kUprightError] = evidence->squares[kLevelError];
-  evidence->traces[kUprightError] = evidence->traces[kLevelError];
-  evidence->squares[kTurnError] += left.Pr[2] * left.Pr[2];
-  evidence->traces[kTurnError] += left.P(2, 2);
+  // The scan lines' errors are among the faults: what is left across the ray is alike both ways.
+  evidence->squares[kAcrossRay] += left.Pr.head<2>().squaredNorm();
+  evidence->traces[kAcrossRay] += left.P.topLeftCorner<2, 2>().trace();
+  evidence->squares[kTurn] += left.Pr[2] * left.Pr[2];
+  evidence->traces[kTurn] += left.P(2, 2);
 }
 
 // One step, as in FitWithErrors, the prior counting as a tenth of an observation: it keeps few
 // poses from a variance of zero. The outlines' robust weights are in the posteriors alone: gross
 // errors were left out before (FindOutlying), and a trace that they turn negative counts as none.
-SightingVariances Step(const std::vector<LikelihoodPose>& poses,
-                       const LikelihoodState& state,
-                       const std::vector<PoseEquations>& returns,
-                       const Eigen::VectorXd& prior_information,
-                       const SightingVariances& prior,
-                       const LikelihoodNoise& noise) {
+Variances Step(const std::vector<LikelihoodPose>& poses,
+               const LikelihoodState& state,
+               const std::vector<PoseEquations>& returns,
+               const Eigen::VectorXd& prior_information,
+               const Variances& prior,
+               const LikelihoodNoise& noise) {
   SharedEquations equations = Eliminate(poses, state, noise, returns);
-  const Eigen::Index num_faults = state.faults_m.size();
+  const Eigen::Index num_faults = state.faults.size();
   equations.information.diagonal().tail(num_faults) += prior_information;
-  equations.pull.tail(num_faults) -= prior_information.cwiseProduct(state.faults_m);
+  equations.pull.tail(num_faults) -= prior_information.cwiseProduct(state.faults);
   SharedPosterior shared;
   shared.covariance = equations.information.inverse();
   shared.step = shared.covariance * equations.pull;
@@ -140,8 +158,8 @@ SightingVariances Step(const std::vector<LikelihoodPose>& poses,
     AddOutline(poses[i], state, i, board, noise, &evidence);
   }
   constexpr double kPriorWeight = 0.1;
-  const SightingVariances v = SquaresOf(noise.errors);
-  SightingVariances next{};
+  const Variances v = VariancesOf(noise);
+  Variances next{};
   for (std::size_t k = 0; k < v.size(); ++k) {
     next[k] = std::sqrt((v[k] * v[k] * evidence.squares[k] + kPriorWeight * prior[k]) /
                         (std::max(evidence.traces[k], 0.0) + kPriorWeight / v[k]));
@@ -180,9 +198,9 @@ LikelihoodNoise EstimateNoise(const std::vector<LikelihoodPose>& poses,
   for (std::size_t i = 0; i < poses.size(); ++i) {
     returns.push_back(EquationsOfReturns(poses[i], state, i, noise.range_m));
   }
-  const SightingVariances prior = SquaresOf(PriorErrors(options));
+  const Variances prior = PriorVariances(options);
   for (int i = 0; i < kSteps; ++i) {
-    noise.errors = RootsOf(Step(poses, state, returns, prior_information, prior, noise));
+    SetVariances(Step(poses, state, returns, prior_information, prior, noise), &noise);
   }
   return noise;
 }

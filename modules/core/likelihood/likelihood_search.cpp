@@ -37,28 +37,30 @@ LikelihoodSearch::LikelihoodSearch(std::vector<LikelihoodPose> poses,
                                    const Eigen::Isometry3d& T_camera_lidar_start,
                                    const LikelihoodOptions& options)
     : poses_(std::move(poses)), options_(options) {
-  const auto num_lens = poses_.empty() ? 0 : poses_.front().lens.NumErrors();
-  const auto num_faults = kFirstRing + static_cast<Eigen::Index>(NumRings(poses_)) + num_lens;
-  state_.num_lens = num_lens;
+  const auto num_camera_faults = poses_.empty() ? 0 : poses_.front().camera_faults.NumFaults();
+  const auto num_faults =
+      kFirstRing + static_cast<Eigen::Index>(NumRings(poses_)) + num_camera_faults;
+  state_.num_camera_faults = num_camera_faults;
   state_.T_camera_lidar = T_camera_lidar_start;
-  state_.faults_m = Eigen::VectorXd::Zero(num_faults);
+  state_.faults = Eigen::VectorXd::Zero(num_faults);
   for (const LikelihoodPose& pose : poses_) state_.T_camera_board.push_back(pose.T_camera_board);
   prior_information_ = FaultPriorInformation(options, num_faults);
-  if (num_lens > 0) {
-    prior_information_.tail(num_lens) = poses_.front().lens.prior_sigmas.cwiseAbs2().cwiseInverse();
+  if (num_camera_faults > 0) {
+    prior_information_.tail(num_camera_faults) =
+        poses_.front().camera_faults.prior_sigmas.cwiseAbs2().cwiseInverse();
   }
   is_free_.assign(static_cast<std::size_t>(num_faults), true);
 }
 
 void LikelihoodSearch::StartFrom(const LidarBias& bias,
-                                 const LensUnknowns& lens,
+                                 const CameraFaultEstimates& camera,
                                  const LikelihoodNoise& noise) {
-  if (static_cast<Eigen::Index>(lens.is_observable.size()) != state_.num_lens) {
-    throw std::logic_error("the likelihood that is refined again had other unknowns of the lens");
+  if (static_cast<Eigen::Index>(camera.is_observable.size()) != state_.num_camera_faults) {
+    throw std::logic_error("the likelihood that is refined again had other faults of the camera");
   }
   const auto take = [this](Eigen::Index fault, const BiasEstimate& estimate) {
     is_free_[static_cast<std::size_t>(fault)] = estimate.is_observable;
-    state_.faults_m[fault] = estimate.value_m;
+    state_.faults[fault] = estimate.value_m;
   };
   noise_ = noise;
   take(kCommon, bias.common);
@@ -68,10 +70,10 @@ void LikelihoodSearch::StartFrom(const LidarBias& bias,
   for (Eigen::Index i = 0; i < state_.NumRings(); ++i) {
     take(kFirstRing + i, bias.rings.at(static_cast<std::size_t>(i)));
   }
-  for (Eigen::Index i = 0; i < state_.num_lens; ++i) {
-    const Eigen::Index fault = kFirstRing + state_.NumRings() + i;
-    is_free_[static_cast<std::size_t>(fault)] = lens.is_observable[static_cast<std::size_t>(i)];
-    state_.faults_m[fault] = lens.values[i];
+  for (Eigen::Index i = 0; i < state_.num_camera_faults; ++i) {
+    const Eigen::Index fault = state_.NumLidarFaults() + i;
+    is_free_[static_cast<std::size_t>(fault)] = camera.is_observable[static_cast<std::size_t>(i)];
+    state_.faults[fault] = camera.values[i];
   }
 }
 
@@ -104,11 +106,11 @@ Eigen::MatrixXd LikelihoodSearch::CovarianceAllFree() const {
 
 void LikelihoodSearch::HoldUnobservable(const Eigen::MatrixXd& covariance_all_free) {
   constexpr double kNarrowed = 0.5;  // of the prior's deviation
-  for (Eigen::Index i = 0; i < state_.faults_m.size(); ++i) {
+  for (Eigen::Index i = 0; i < state_.faults.size(); ++i) {
     const double variance = covariance_all_free(kExtrinsicSize + i, kExtrinsicSize + i);
     const bool is_free = variance * prior_information_[i] <= kNarrowed * kNarrowed;
     is_free_[static_cast<std::size_t>(i)] = is_free;
-    if (!is_free) state_.faults_m[i] = 0.0;
+    if (!is_free) state_.faults[i] = 0.0;
   }
 }
 
@@ -122,14 +124,14 @@ bool LikelihoodSearch::IsPhysical() const {
     const Eigen::Vector3d centre_camera_m = state_.T_camera_board[i].translation();
     if (!(centre_camera_m.dot(poses_[i].T_camera_board.translation()) > 0.0)) return false;
   }
-  return state_.faults_m.allFinite();
+  return state_.faults.allFinite();
 }
 
 SharedEquations LikelihoodSearch::Equations() const {
   SharedEquations equations = Eliminate(poses_, state_, noise_);
-  const Eigen::Index num_faults = state_.faults_m.size();
+  const Eigen::Index num_faults = state_.faults.size();
   equations.information.diagonal().tail(num_faults) += prior_information_;
-  equations.pull.tail(num_faults) -= prior_information_.cwiseProduct(state_.faults_m);
+  equations.pull.tail(num_faults) -= prior_information_.cwiseProduct(state_.faults);
   return equations;
 }
 
@@ -145,7 +147,7 @@ double LikelihoodSearch::Step() {
   const SharedEquations equations = Equations();
   const Eigen::VectorXd step = Gain(equations.information) * equations.pull;
   state_.T_camera_lidar = PerturbLeft(state_.T_camera_lidar, step.head<kExtrinsicSize>());
-  state_.faults_m += step.tail(state_.faults_m.size());
+  state_.faults += step.tail(state_.faults.size());
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     state_.T_camera_board[i] =
         PerturbLeft(state_.T_camera_board[i], equations.poses[i].BoardStep(step));

@@ -15,14 +15,16 @@ Eigen::VectorXd FaultPriorInformation(const LikelihoodOptions& options, Eigen::I
 /// A maximum-likelihood search: data, what is believed of the noise, and where it stands.
 class LikelihoodSearch {
  public:
-  /// Starts without faults, with the boards where the chessboards are. What the poses' LensTerms
-  /// ask for is among the faults.
+  /// Starts without faults, with the boards where the chessboards are. What the poses'
+  /// CameraFaultTerms ask for is among the faults.
   LikelihoodSearch(std::vector<LikelihoodPose> poses,
                    const Eigen::Isometry3d& T_camera_lidar_start,
                    const LikelihoodOptions& options);
 
   /// Takes over faults, which of them are held at zero, and noise levels.
-  void StartFrom(const LidarBias& bias, const LensUnknowns& lens, const LikelihoodNoise& noise);
+  void StartFrom(const LidarBias& bias,
+                 const CameraFaultEstimates& camera,
+                 const LikelihoodNoise& noise);
 
   /// True if no unknown moved by more than `small_step` (radians or metres) in the last step.
   bool Minimise(int max_iterations, double small_step);

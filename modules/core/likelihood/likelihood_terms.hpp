@@ -9,7 +9,7 @@
 
 #include "core/board/board_sample.hpp"
 #include "core/geometry/rigid.hpp"
-#include "core/likelihood/lens_terms.hpp"
+#include "core/likelihood/camera_faults.hpp"
 #include "core/likelihood/lidar_bias.hpp"
 
 namespace voqcal {
@@ -80,7 +80,7 @@ struct LikelihoodPose {
   std::array<Eigen::Vector3d, 4> corners_camera_m;  ///< Of the outline, by the chessboard.
   OutlineRays outline;
   std::vector<BoardReturn> returns;
-  LensTerms lens;  ///< What all chessboards share, and is to be estimated; may be empty.
+  CameraFaultTerms camera_faults;  ///< Those that are to be estimated; may be empty.
 };
 
 /// @param T_camera_lidar  resolves the board's half-turn.

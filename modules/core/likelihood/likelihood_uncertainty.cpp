@@ -37,7 +37,7 @@ Vector6d Resampled(const LikelihoodSearch& search,
   Vector6d variance =
       (num - 1.0) / num * (steps.colwise() - steps.rowwise().mean()).rowwise().squaredNorm();
   // What poses do not tell: how far the faults are from their priors' middle.
-  for (Eigen::Index i = 0; i < search.state().faults_m.size(); ++i) {
+  for (Eigen::Index i = 0; i < search.state().faults.size(); ++i) {
     const Eigen::Index fault = kExtrinsicSize + i;
     const double information = search.prior_information()[i];
     const Eigen::VectorXd shift = search.IsFree(i) ? Eigen::VectorXd(information * gain.col(fault))
@@ -78,9 +78,9 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
                      const CameraModel& camera,
                      const LikelihoodOptions& options) {
   // Who sees the chessboards better than expected was given better numbers, too.
-  const double trust = search.noise().errors.tilt_rad / options.camera_error_rad;
+  const double trust = search.noise().tilt_rad / options.camera_error_rad;
   const auto sensitivity = [&](const std::function<Vector6d(const LikelihoodPose&)>& board_shift) {
-    const Eigen::Index num_lens = search.state().num_lens;
+    const Eigen::Index num_camera_faults = search.state().num_camera_faults;
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(equations.pull.size());
     for (std::size_t i = 0; i < equations.poses.size(); ++i) {
       const LikelihoodPose& pose = search.poses()[i];
@@ -88,7 +88,8 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
           CameraCovariance(pose, search.noise()).inverse() * board_shift(pose);
       const PoseShare& share = equations.poses[i];
       pull -= share.to_board * (share.board_covariance * weighted);
-      if (num_lens > 0) pull.tail(num_lens) -= pose.lens.board_by_lens.transpose() * weighted;
+      if (num_camera_faults > 0)
+        pull.tail(num_camera_faults) -= pose.camera_faults.board_by_faults.transpose() * weighted;
     }
     return Vector6d((gain * pull).head<kExtrinsicSize>().cwiseAbs2());
   };
@@ -98,7 +99,7 @@ Vector6d ModelErrors(const LikelihoodSearch& search,
   };
   const Eigen::Vector2d principal_point_px(camera.cx_px, camera.cy_px);
   Vector6d variance = Vector6d::Zero();
-  const bool are_intrinsics_unknown = search.state().num_lens == kNumLensErrors;
+  const bool are_intrinsics_unknown = search.state().num_camera_faults == kNumLensErrors;
   if (!are_intrinsics_unknown) {  // else the likelihood counts them
     variance += by_lens([&](const Eigen::Vector2d& pixel_px) -> Eigen::Vector2d {
       return trust * options.focal_length_error * (pixel_px - principal_point_px);

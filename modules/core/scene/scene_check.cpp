@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/format.hpp"
+#include "core/parallel.hpp"
 #include "core/problems.hpp"
 #include "core/scene/scene_fit.hpp"
 #include "core/scene/scene_score.hpp"
@@ -83,11 +84,14 @@ std::vector<SceneProbe> Probe(const std::vector<SceneView>& views,
       for (const double size : axis < 3 ? kProbesRad : kProbesM) {
         SceneProbe probe;
         probe.delta[axis] = sign * size;
-        probe.score = MeanEdgeRank(views, camera, PerturbLeft(T_camera_lidar, probe.delta));
         probes.push_back(probe);
       }
     }
   }
+  ParallelFor(probes.size(), [&](std::size_t i) {
+    const Eigen::Isometry3d T_probed = PerturbLeft(T_camera_lidar, probes[i].delta);
+    probes[i].score = MeanEdgeRank(views, camera, T_probed);
+  });
   return probes;
 }
 

@@ -1,7 +1,9 @@
 #include "core/scene/scene_cost.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -18,6 +20,44 @@ double WeightOf(const DepthEdge& edge) {
 
 bool IsInImage(const Eigen::Vector3d& point_camera_m, const CameraModel& camera) {
   return camera.IsInFront(point_camera_m) && camera.Contains(camera.Project(point_camera_m));
+}
+
+struct ProjectedEdge {
+  Eigen::Vector3d point_camera_m;
+  std::optional<Eigen::Vector2d> pixel_px;  // none behind the camera
+  Matrix23d J_px_point;                     // if asked for
+};
+
+ProjectedEdge Projected(const SceneEdge& edge, const EdgeLookup& lookup, bool with_jacobian) {
+  ProjectedEdge projected;
+  const Eigen::Vector3d true_lidar_m =
+      edge.position_lidar_m - lookup.outset_rad * edge.outward_lidar_m;
+  projected.point_camera_m = lookup.at.T_camera_lidar() * true_lidar_m;
+  projected.pixel_px = ProjectIfInFront(
+      lookup.camera, projected.point_camera_m, with_jacobian ? &projected.J_px_point : nullptr);
+  return projected;
+}
+
+// And its derivative, a row, unless that is null.
+double SurpriseAt(const SceneEdge& edge,
+                  const ProjectedEdge& projected,
+                  const EdgeLookup& lookup,
+                  EdgeField::Patch* patch,
+                  double* J_row) {
+  const EdgeField& field = lookup.fields[edge.view];
+  if (J_row == nullptr) {
+    return projected.pixel_px ? field.At(*projected.pixel_px, patch, nullptr)
+                              : EdgeField::kNothingSeen;
+  }
+  Eigen::Map<Eigen::Matrix<double, 1, kSceneParameters>> J(J_row);
+  J.setZero();
+  if (!projected.pixel_px) return EdgeField::kNothingSeen;
+  Eigen::RowVector2d J_px;
+  const double surprise = field.At(*projected.pixel_px, patch, &J_px);
+  const Eigen::RowVector3d J_point_m = J_px * projected.J_px_point;
+  J.head<6>() = J_point_m * lookup.at.PointJacobian(projected.point_camera_m);
+  J[6] = -J_point_m.dot(lookup.at.T_camera_lidar().linear() * edge.outward_lidar_m);
+  return surprise;
 }
 
 }  // namespace
@@ -57,25 +97,28 @@ std::vector<EdgeField> MakeEdgeFields(const std::vector<SceneView>& views, doubl
   return fields;
 }
 
-double SurpriseAt(const SceneEdge& edge,
-                  const std::vector<EdgeField>& fields,
-                  const CameraModel& camera,
-                  const LeftPerturbation& at,
-                  double outset_rad,
-                  Eigen::Matrix<double, 1, kSceneParameters>* J) {
-  const Eigen::Vector3d true_lidar_m = edge.position_lidar_m - outset_rad * edge.outward_lidar_m;
-  const Eigen::Vector3d point_camera_m = at.T_camera_lidar() * true_lidar_m;
-  if (J != nullptr) J->setZero();
-  if (!camera.IsInFront(point_camera_m)) return EdgeField::kNothingSeen;
-  if (J == nullptr) return fields[edge.view].At(camera.Project(point_camera_m), nullptr);
-  Matrix23d J_px_point;
-  const Eigen::Vector2d pixel_px = ProjectWithJacobian(camera, point_camera_m, &J_px_point);
-  Eigen::RowVector2d J_px;
-  const double surprise = fields[edge.view].At(pixel_px, &J_px);
-  const Eigen::RowVector3d J_point_m = J_px * J_px_point;
-  J->head<6>() = J_point_m * at.PointJacobian(point_camera_m);
-  (*J)[6] = -J_point_m.dot(at.T_camera_lidar().linear() * edge.outward_lidar_m);
-  return surprise;
+void SurprisesAt(const SceneEdge* const* edges,
+                 std::size_t num,
+                 const EdgeLookup& lookup,
+                 EdgeField::Patch* patches,
+                 double* surprises,
+                 double* J_rows) {
+  constexpr std::size_t kNumAtOnce = 64;
+  std::array<ProjectedEdge, kNumAtOnce> projected;
+  const auto patch_of = [&](std::size_t i) { return patches != nullptr ? patches + i : nullptr; };
+  for (std::size_t begin = 0; begin < num; begin += kNumAtOnce) {
+    const std::size_t end = std::min(num, begin + kNumAtOnce);
+    // What must be fetched from far is asked for before any of it is waited for.
+    for (std::size_t i = begin; i < end; ++i) {
+      ProjectedEdge& edge = projected[i - begin];
+      edge = Projected(*edges[i], lookup, J_rows != nullptr);
+      if (edge.pixel_px) lookup.fields[edges[i]->view].Prefetch(*edge.pixel_px, patch_of(i));
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      double* J = J_rows != nullptr ? J_rows + kSceneParameters * i : nullptr;
+      surprises[i] = SurpriseAt(*edges[i], projected[i - begin], lookup, patch_of(i), J);
+    }
+  }
 }
 
 }  // namespace voqcal

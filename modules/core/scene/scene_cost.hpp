@@ -40,12 +40,24 @@ std::vector<SceneEdge> SceneEdgesInView(const std::vector<SceneView>& views,
 /// Where edges are looked at: the fields of all views at one blur.
 std::vector<EdgeField> MakeEdgeFields(const std::vector<SceneView>& views, double blur_px);
 
-/// The surprise at one edge, and its derivative by the unknowns unless `J` is null.
-double SurpriseAt(const SceneEdge& edge,
-                  const std::vector<EdgeField>& fields,
-                  const CameraModel& camera,
-                  const LeftPerturbation& at,
-                  double outset_rad,
-                  Eigen::Matrix<double, 1, kSceneParameters>* J);
+/// Where edges are looked at: by which extrinsic, and in which fields.
+struct EdgeLookup {
+  const std::vector<EdgeField>& fields;
+  const CameraModel& camera;
+  LeftPerturbation at;
+  double outset_rad = 0;
+};
+
+/// The surprises at `num` edges.
+/// @param patches  one an edge, of its view's field; the same when the edges are asked again. Null
+/// if
+///     they are not.
+/// @param J_rows   their derivatives by the unknowns, a row each; may be null.
+void SurprisesAt(const SceneEdge* const* edges,
+                 std::size_t num,
+                 const EdgeLookup& lookup,
+                 EdgeField::Patch* patches,
+                 double* surprises,
+                 double* J_rows);
 
 }  // namespace voqcal

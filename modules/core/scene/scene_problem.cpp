@@ -13,15 +13,30 @@ namespace {
 
 using SectorGradients = std::array<SceneVector, kNumSceneSectors>;
 
+EdgeLookup LookupAt(const SceneProblem& scene, const SceneVector& unknowns) {
+  return {scene.Finest(),
+          scene.camera,
+          LeftPerturbation(scene.T_camera_lidar, unknowns.head<6>()),
+          unknowns[6]};
+}
+
 // Of the weighted sum of surprises, by sector.
 SectorGradients GradientsAt(const SceneProblem& scene, const SceneVector& unknowns) {
-  const LeftPerturbation at(scene.T_camera_lidar, unknowns.head<6>());
+  const std::vector<const SceneEdge*> edges = EdgesIn(scene, kAllSectors);
+  std::vector<double> surprises(edges.size());
+  Eigen::Matrix<double, kSceneParameters, Eigen::Dynamic> gradient_of_edge(kSceneParameters,
+                                                                           edges.size());
+  SurprisesAt(edges.data(),
+              edges.size(),
+              LookupAt(scene, unknowns),
+              nullptr,
+              surprises.data(),
+              gradient_of_edge.data());
   SectorGradients gradients;
   gradients.fill(SceneVector::Zero());
-  Eigen::Matrix<double, 1, kSceneParameters> J;
-  for (const SceneEdge& edge : scene.edges) {
-    SurpriseAt(edge, scene.Finest(), scene.camera, at, unknowns[6], &J);
-    gradients[static_cast<std::size_t>(edge.sector)] += edge.weight * J.transpose();
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    gradients[static_cast<std::size_t>(edges[i]->sector)] +=
+        edges[i]->weight * gradient_of_edge.col(static_cast<Eigen::Index>(i));
   }
   return gradients;
 }
@@ -52,15 +67,25 @@ SceneMatrix ScatterAt(const SceneProblem& scene, const SceneVector& unknowns) {
 
 }  // namespace
 
-// Mean surprise of the edges in the sectors, weighted.
+std::vector<const SceneEdge*> EdgesIn(const SceneProblem& scene, Sectors sectors) {
+  std::vector<const SceneEdge*> edges;
+  edges.reserve(scene.edges.size());
+  for (const SceneEdge& edge : scene.edges) {
+    if (IsIn(sectors, edge)) edges.push_back(&edge);
+  }
+  return edges;
+}
+
 double MeanSurprise(const SceneProblem& scene, Sectors sectors, const SceneVector& unknowns) {
-  const LeftPerturbation at(scene.T_camera_lidar, unknowns.head<6>());
+  const std::vector<const SceneEdge*> edges = EdgesIn(scene, sectors);
+  std::vector<double> surprises(edges.size());
+  SurprisesAt(
+      edges.data(), edges.size(), LookupAt(scene, unknowns), nullptr, surprises.data(), nullptr);
   double sum = 0;
   double sum_weights = 0;
-  for (const SceneEdge& edge : scene.edges) {
-    if (!IsIn(sectors, edge)) continue;
-    sum += edge.weight * SurpriseAt(edge, scene.Finest(), scene.camera, at, unknowns[6], nullptr);
-    sum_weights += edge.weight;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    sum += edges[i]->weight * surprises[i];
+    sum_weights += edges[i]->weight;
   }
   return sum / sum_weights;
 }

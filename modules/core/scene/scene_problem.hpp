@@ -28,6 +28,9 @@ struct SceneProblem {
   const std::vector<EdgeField>& Finest() const { return levels.back(); }
 };
 
+/// Those in the sectors, in order.
+std::vector<const SceneEdge*> EdgesIn(const SceneProblem& scene, Sectors sectors);
+
 /// Mean surprise of the edges in the sectors, weighted.
 double MeanSurprise(const SceneProblem& scene, Sectors sectors, const SceneVector& unknowns);
 

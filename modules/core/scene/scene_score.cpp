@@ -42,8 +42,9 @@ double MeanEdgeRank(const std::vector<SceneView>& views,
     for (const DepthEdge& edge : view.edges) {
       const Eigen::Vector3d position_camera_m =
           T_camera_lidar * edge.position_lidar_m.cast<double>();
-      if (!camera.IsInFront(position_camera_m)) continue;
-      const double rank = RankAt(view, camera.Project(position_camera_m));
+      const auto pixel_px = camera.ProjectIfInFront(position_camera_m);
+      if (!pixel_px) continue;
+      const double rank = RankAt(view, *pixel_px);
       if (rank < 0) continue;
       sum += rank;
       ++num_seen;

@@ -22,10 +22,11 @@ class SceneCost final : public ceres::CostFunction {
             const std::vector<EdgeField>& fields,
             Sectors sectors,
             double scale)
-      : scene_(scene), fields_(fields), scale_(scale) {
-    for (const SceneEdge& edge : scene.edges) {
-      if (IsIn(sectors, edge)) edges_.push_back(&edge);
-    }
+      : scene_(scene),
+        fields_(fields),
+        scale_(scale),
+        edges_(EdgesIn(scene, sectors)),
+        patches_(edges_.size()) {
     set_num_residuals(static_cast<int>(edges_.size()));
     mutable_parameter_block_sizes()->push_back(kSceneParameters);
   }
@@ -34,38 +35,43 @@ class SceneCost final : public ceres::CostFunction {
                 double* residuals,
                 double** jacobians) const override {
     const Eigen::Map<const SceneVector> unknowns(parameters[0]);
-    const LeftPerturbation at(scene_.T_camera_lidar, unknowns.head<6>());
+    const EdgeLookup lookup{fields_,
+                            scene_.camera,
+                            LeftPerturbation(scene_.T_camera_lidar, unknowns.head<6>()),
+                            unknowns[6]};
     double* J_rows = jacobians != nullptr ? jacobians[0] : nullptr;
-    constexpr std::size_t kEdgesAtOnce = 2000;  // a thread costs about as much as so many
+    constexpr std::size_t kEdgesAtOnce = 1000;  // waking a thread costs about as much as so many
     ParallelFor((edges_.size() + kEdgesAtOnce - 1) / kEdgesAtOnce, [&](std::size_t part) {
-      const std::size_t end = std::min(edges_.size(), (part + 1) * kEdgesAtOnce);
-      for (std::size_t i = part * kEdgesAtOnce; i < end; ++i) {
-        EvaluateEdge(i, at, unknowns[6], residuals, J_rows);
-      }
+      const std::size_t begin = part * kEdgesAtOnce;
+      EvaluateEdges(
+          begin, std::min(edges_.size(), begin + kEdgesAtOnce), lookup, residuals, J_rows);
     });
     return true;
   }
 
  private:
-  void EvaluateEdge(std::size_t i,
-                    const LeftPerturbation& at,
-                    double outset_rad,
-                    double* residuals,
-                    double* J_rows) const {
-    const SceneEdge& edge = *edges_[i];
-    Eigen::Matrix<double, 1, kSceneParameters> J;
-    const double surprise =
-        SurpriseAt(edge, fields_, scene_.camera, at, outset_rad, J_rows != nullptr ? &J : nullptr);
-    residuals[i] = std::sqrt(2 * scale_ * edge.weight * surprise);
-    if (J_rows == nullptr) return;
-    Eigen::Map<Eigen::Matrix<double, 1, kSceneParameters>> row(J_rows + kSceneParameters * i);
-    row = scale_ * edge.weight / residuals[i] * J;
+  void EvaluateEdges(std::size_t begin,
+                     std::size_t end,
+                     const EdgeLookup& lookup,
+                     double* residuals,
+                     double* J_rows) const {
+    double* J_of_surprises = J_rows != nullptr ? J_rows + kSceneParameters * begin : nullptr;
+    SurprisesAt(
+        &edges_[begin], end - begin, lookup, &patches_[begin], residuals + begin, J_of_surprises);
+    for (std::size_t i = begin; i < end; ++i) {
+      const double weight = scale_ * edges_[i]->weight;
+      residuals[i] = std::sqrt(2 * weight * residuals[i]);
+      if (J_rows == nullptr) continue;
+      Eigen::Map<Eigen::Matrix<double, 1, kSceneParameters>> row(J_rows + kSceneParameters * i);
+      row *= weight / residuals[i];
+    }
   }
 
   const SceneProblem& scene_;
   const std::vector<EdgeField>& fields_;
   double scale_;
   std::vector<const SceneEdge*> edges_;
+  mutable std::vector<EdgeField::Patch> patches_;  // Ceres asks for one Evaluate at a time
 };
 
 // What was known before: residuals L' x with L L' the information.

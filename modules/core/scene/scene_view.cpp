@@ -58,8 +58,9 @@ cv::Mat GradientMagnitude(const cv::Mat& gray, double blur_px) {
     for (int x = 0; x < gray.cols; ++x) {
       const int gx = dx.at<short>(y, x);
       const int gy = dy.at<short>(y, x);
+      // To the nearest: the root of a whole number is never half-way.
       magnitude.at<ushort>(y, x) =
-          static_cast<ushort>(std::lround(std::sqrt(static_cast<double>(gx * gx + gy * gy))));
+          static_cast<ushort>(std::sqrt(static_cast<double>(gx * gx + gy * gy)) + 0.5);
     }
   }
   return magnitude;

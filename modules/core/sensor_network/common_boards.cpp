@@ -1,6 +1,5 @@
 #include "core/sensor_network/common_boards.hpp"
 
-#include <cmath>
 #include <cstdint>
 
 #include "core/estimation/set_extrinsic.hpp"
@@ -8,19 +7,6 @@
 #include "core/least_samples.hpp"
 
 namespace voqcal {
-namespace {
-
-/// The fit knows of the turn of `to`'s chessboards alone. That of `from` is not modelled: it has
-/// `to`'s form as far as the cameras look the same way, so that the prior is that of both.
-ErrorPriors PriorsOfBoth() {
-  ErrorPriors priors = kCameraErrorPriors;
-  priors.shared.chessboard_turn_x_rad *= M_SQRT2;
-  priors.shared.chessboard_turn_y_rad *= M_SQRT2;
-  return priors;
-}
-
-}  // namespace
-
 std::optional<SensorPair> PairOfCameras(const std::string& from,
                                         const std::string& to,
                                         const std::vector<CommonBoard>& boards,
@@ -35,7 +21,7 @@ std::optional<SensorPair> PairOfCameras(const std::string& from,
   }
   std::vector<const BoardSample*> all;
   for (const BoardSample& sample : samples) all.push_back(&sample);
-  const MixedFit fit = FitWithErrors(all, to_camera, AnalyticExtrinsic(all), PriorsOfBoth());
+  const MixedFit fit = FitWithErrors(all, to_camera, AnalyticExtrinsic(all), kCameraErrorPriors);
   if (!fit.is_usable) return std::nullopt;
   return SensorPair{from, to, fit.T_camera_lidar, fit.ExtrinsicCovariance()};
 }

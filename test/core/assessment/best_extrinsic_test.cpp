@@ -75,7 +75,10 @@ TEST(RefineBest, LeavesTheRaysWhereAllChessboardsAreTurned) {
   ASSERT_TRUE(best.IsUsable()) << best.problem;
   EXPECT_LT(RotationAngleBetween(best.T_camera_lidar.linear(), test::TestExtrinsic().linear()),
             0.2 * kTurnRad);
-  EXPECT_NEAR(best.chessboard_turn_rad.y(), kTurnRad, 0.3 * kTurnRad);
+  const ChessboardTurn& turn = best.chessboard_turn;
+  EXPECT_NEAR(turn.value_rad.y(), kTurnRad, 0.3 * kTurnRad);
+  EXPECT_NEAR(turn.value_rad.y(), kTurnRad, 3.0 * turn.standard_error_rad.y());
+  EXPECT_LT(turn.standard_error_rad.y(), 0.3 * kTurnRad);
   EXPECT_LT(best.held_out.normal_deg.mean, 0.5 * kDegPerRad * kTurnRad);
 }
 

@@ -5,6 +5,7 @@
 
 #include "support/matchers.hpp"
 #include "support/synthetic_samples.hpp"
+#include "support/with_helpers.hpp"
 
 namespace voqcal {
 namespace {
@@ -61,6 +62,22 @@ TEST(Calibrate, SaysWhichStepGaveNothing) {
   const auto one_way = Calibrate(test::SynthesizeSamples(parallel), {}, kTask);
   EXPECT_THAT(one_way.problem, HasSubstr("all boards face the same way"));
   EXPECT_THAT(one_way.calibration.used_ids, IsEmpty());
+}
+
+TEST(Calibrate, GivesTheSameOnAnyNumberOfThreads) {
+  const auto samples = test::SynthesizeSamples(NoisyScene());
+  const auto calibrate = [&](std::size_t num_helpers) {
+    const test::WithHelpers helpers(num_helpers);
+    return Calibrate(samples, {}, kTask).calibration;
+  };
+  const Calibration alone = calibrate(0);
+  const Calibration helped = calibrate(3);
+  EXPECT_EQ(alone.T_camera_lidar.matrix(), helped.T_camera_lidar.matrix());
+  EXPECT_EQ(alone.covariance, helped.covariance);
+  ASSERT_THAT(alone.trials, SizeIs(4));
+  ASSERT_EQ(alone.trials[1].problem, "");  // the reprojection, which is tried with each left out
+  EXPECT_GT(alone.trials[1].ErrorMm(), 0.0);
+  EXPECT_EQ(alone.trials[1].ErrorMm(), helped.trials[1].ErrorMm());
 }
 
 TEST(ChooseSets, ComparesWithThePublishedCriterion) {

@@ -232,8 +232,8 @@ TEST(RefineByLikelihood, StandsWhereCeresFindsTheMinimumOfTheSameCost) {
   for (std::size_t i = 0; i < rings.size(); ++i) {
     add_fault(&rings[i], options.ring_prior_m, refined.bias.rings[i]);
   }
-  add_prior(&turn_x, kPriorChessboardTurnRad, refined.lens_unknowns.is_observable[0]);
-  add_prior(&turn_y, kPriorChessboardTurnRad, refined.lens_unknowns.is_observable[1]);
+  add_prior(&turn_x, kPriorChessboardTurnRad, refined.camera_faults.is_observable[0]);
+  add_prior(&turn_y, kPriorChessboardTurnRad, refined.camera_faults.is_observable[1]);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.max_num_iterations = 200;

@@ -63,8 +63,8 @@ TEST(RefineByLikelihood, LeavesTheRaysWhereAllChessboardsAreTurned) {
   ASSERT_TRUE(refined.IsUsable());
   EXPECT_LT(RotationAngleBetween(refined.T_camera_lidar.linear(), test::TestExtrinsic().linear()),
             0.2 * kTurnRad);
-  ASSERT_EQ(refined.lens_unknowns.values.size(), 2);
-  EXPECT_NEAR(refined.lens_unknowns.values[0], kTurnRad, 0.2 * kTurnRad);
+  ASSERT_EQ(refined.camera_faults.values.size(), 2);
+  EXPECT_NEAR(refined.camera_faults.values[0], kTurnRad, 0.2 * kTurnRad);
 }
 
 TEST(LikelihoodTerms, JacobiansAgreeWithDifferences) {

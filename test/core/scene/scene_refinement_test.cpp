@@ -11,6 +11,7 @@
 #include "core/simulation/simulation.hpp"
 #include "support/synthetic_samples.hpp"
 #include "support/test_cameras.hpp"
+#include "support/with_helpers.hpp"
 
 namespace voqcal {
 namespace {
@@ -84,31 +85,45 @@ TEST_F(RefineBySceneTest, ABlankHallGetsWhatWasGivenAndIsTold) {
   EXPECT_FALSE(RefineByScene({}, Camera(), T_start, Covariance(0.5, 0.002), {}).is_used);
 }
 
-TEST_F(RefineBySceneTest, SameViewsSameAnswer) {
-  const auto refine = [] {
+TEST_F(RefineBySceneTest, SameViewsSameAnswerOnAnyNumberOfThreads) {
+  const auto refine = [](std::size_t num_helpers) {
+    const test::WithHelpers helpers(num_helpers);
     return RefineByScene(*views_, Camera(), TurnedAboutY(0.3), Covariance(0.5, 0.01), {});
   };
-  EXPECT_EQ(refine().T_camera_lidar.matrix(), refine().T_camera_lidar.matrix());
-  EXPECT_EQ(refine().covariance, refine().covariance);
+  const SceneRefinement alone = refine(0);
+  const SceneRefinement helped = refine(3);
+  EXPECT_EQ(alone.T_camera_lidar.matrix(), helped.T_camera_lidar.matrix());
+  EXPECT_EQ(alone.covariance, helped.covariance);
+  EXPECT_EQ(alone.held_out_gain, helped.held_out_gain);
 }
 
 TEST_F(RefineBySceneTest, SurprisesHaveTheirNumericDerivatives) {
+  const CameraModel camera = Camera();
   const std::vector<EdgeField> fields = MakeEdgeFields(*views_, 6.0);
   const auto edges = SceneEdgesInView(*views_, Camera(), test::TestExtrinsic());
   ASSERT_GT(edges.size(), 100U);
   int num_compared = 0;
   for (std::size_t i = 0; i < edges.size(); i += edges.size() / 20) {
-    const auto value_at = [&](const SceneVector& unknowns) {
+    const SceneEdge* const edge = &edges[i];
+    EdgeField::Patch patch;
+    const auto surprise_at = [&](const SceneVector& unknowns, double* J) {
       const LeftPerturbation at(test::TestExtrinsic(), unknowns.head<6>());
-      return SurpriseAt(edges[i], fields, Camera(), at, unknowns[6], nullptr);
+      const EdgeLookup lookup{fields, camera, at, unknowns[6]};
+      double alone = 0;
+      double near = 0;
+      SurprisesAt(&edge, 1, lookup, nullptr, &alone, J);
+      SurprisesAt(&edge, 1, lookup, &patch, &near, J);
+      EXPECT_EQ(alone, near);
+      return near;
+    };
+    const auto value_at = [&](const SceneVector& unknowns) {
+      return surprise_at(unknowns, nullptr);
     };
     Eigen::Matrix<double, 1, kSceneParameters> J;
-    SurpriseAt(edges[i],
-               fields,
-               Camera(),
-               LeftPerturbation(test::TestExtrinsic(), Vector6d::Zero()),
-               0,
-               &J);
+    surprise_at(SceneVector::Zero(), J.data());
+    for (const double turn_rad : {0.002, 0.02, -0.3}) {
+      value_at(turn_rad * SceneVector::Unit(1));  // a pixel or two away, many, out of the image
+    }
     for (int k = 0; k < kSceneParameters; ++k) {
       const SceneVector d = 1e-6 * SceneVector::Unit(k);
       const double numeric = (value_at(d) - value_at(-d)) / 2e-6;

@@ -128,12 +128,8 @@ TEST(RefinedMessage, ComesBack) {
   best.likelihood.bias.common = {0.02, 0.001, true};
   best.likelihood.bias.rings = {{}, {-0.01, 0.002, true}};
   best.likelihood.bias.shades = {3.0, 40.0};
-  best.chessboard_turn_rad = {0.01, -0.02};
-  SightingErrors& errors = best.likelihood.noise.errors;
-  errors.along_ray_m = 0.1;
-  errors.level_m = 0.2;  // the message has one number for it and upright_m
-  errors.tilt_rad = 0.7;
-  errors.turn_rad = 0.4;
+  best.chessboard_turn = {{0.01, -0.02}, {0.003, 0.004}};
+  best.likelihood.noise = {0.05, 0.1, 0.2, 0.7, 0.4};
   best.likelihood.uncertainty.by_resampling << 1, 2, 3, 4, 5, 6;
   extrinsic_refined_t message = ToMessage(best, kIds);
   EXPECT_EQ(message.sample_ids, kIds);
@@ -148,12 +144,13 @@ TEST(RefinedMessage, ComesBack) {
   EXPECT_TRUE(back.Bias().rings.at(1).is_observable);
   EXPECT_FALSE(back.Bias().rings.at(0).is_observable);
   EXPECT_EQ(back.Bias().shades.bright_intensity, 40.0);
-  EXPECT_EQ(back.chessboard_turn_rad, best.chessboard_turn_rad);
-  EXPECT_EQ(back.likelihood.noise.errors.along_ray_m, 0.1);
-  EXPECT_EQ(back.likelihood.noise.errors.level_m, 0.2);
-  EXPECT_EQ(back.likelihood.noise.errors.upright_m, 0.2);
-  EXPECT_EQ(back.likelihood.noise.errors.tilt_rad, 0.7);
-  EXPECT_EQ(back.likelihood.noise.errors.turn_rad, 0.4);
+  EXPECT_EQ(back.chessboard_turn.value_rad, best.chessboard_turn.value_rad);
+  EXPECT_EQ(back.chessboard_turn.standard_error_rad, best.chessboard_turn.standard_error_rad);
+  EXPECT_EQ(back.likelihood.noise.range_m, 0.05);
+  EXPECT_EQ(back.likelihood.noise.along_ray_m, 0.1);
+  EXPECT_EQ(back.likelihood.noise.across_ray_m, 0.2);
+  EXPECT_EQ(back.likelihood.noise.tilt_rad, 0.7);
+  EXPECT_EQ(back.likelihood.noise.turn_rad, 0.4);
   EXPECT_EQ(back.likelihood.uncertainty.by_resampling, best.likelihood.uncertainty.by_resampling);
   EXPECT_TRUE(back.IsUsable());
   message.problem = "degenerate";

@@ -166,7 +166,7 @@ TEST(ReadLidarBias, ReadsWhatToYamlWrites) {
   result.lidar_bias.rings = {{0.0, 0.015, false}, {-0.01, 0.002, true}};
   result.lidar_bias.outline_rise = {1e-5, 1e-6, true};
   result.lidar_bias.shades = {3.0, 40.0};
-  result.chessboard_turn_rad = {1.0 / 300, -0.01};
+  result.chessboard_turn = {{1.0 / 300, -0.01}, {0.001, 0.002}};
   const std::string text = ToYaml(result);
   EXPECT_EQ(YAML::Load(text)["lidar_bias"]["ring_m"]["status"][0].as<std::string>(),
             "unobservable");
@@ -181,7 +181,8 @@ TEST(ReadLidarBias, ReadsWhatToYamlWrites) {
   EXPECT_FALSE(bias.outline_lift.is_observable);
   EXPECT_EQ(bias.outline_rise.value_m, 1e-5);
   EXPECT_EQ(bias.shades.bright_intensity, 40.0);
-  EXPECT_EQ(ReadChessboardTurn(folder.path() / "extrinsic.yaml"), result.chessboard_turn_rad);
+  EXPECT_EQ(ReadChessboardTurn(folder.path() / "extrinsic.yaml"), result.chessboard_turn.value_rad);
+  EXPECT_EQ(YAML::Load(text)["chessboard_turn_standard_error_rad"][1].as<double>(), 0.002);
 }
 
 TEST(ReadLidarBias, IsNoneWhereNoneWasEstimated) {

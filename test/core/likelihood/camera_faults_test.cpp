@@ -1,4 +1,4 @@
-#include "core/likelihood/lens_terms.hpp"
+#include "core/likelihood/camera_faults.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,15 +55,15 @@ TEST(CorrectedCameraPose, IsWhatAFitWithTheCorrectedCameraFinds) {
   }
 }
 
-TEST(LensTerms, SquaresLeftAreThoseOfAFitWithTheCorrectedCamera) {
+TEST(CameraFaultTerms, SquaresLeftAreThoseOfAFitWithTheCorrectedCamera) {
   constexpr double kCornerErrorPx = 0.5;
   constexpr double kLensError = 0.005;
   const auto samples = SamplesThrough(SomeErrors(), 0.1);
   const LensErrors errors = 0.3 * SomeErrors();
   const CameraModel corrected = CorrectedCamera(test::TestCamera(), errors);
   for (const BoardSample& sample : samples) {
-    const LensTerms terms =
-        LensTermsOf(sample, test::TestBoard(), test::TestCamera(), kLensError, kCornerErrorPx);
+    const CameraFaultTerms terms =
+        LensErrorTerms(sample, test::TestBoard(), test::TestCamera(), kLensError, kCornerErrorPx);
     const auto corners_m = test::TestBoard().InnerCornersBoardM();
     const auto squares = [&](const CameraModel& camera) {
       const auto fit = FitPlanarPose(camera, corners_m, sample.camera.corners_px);
@@ -76,12 +76,13 @@ TEST(LensTerms, SquaresLeftAreThoseOfAFitWithTheCorrectedCamera) {
   }
 }
 
-TEST(LensTerms, AreZeroWithoutPixels) {
+TEST(CameraFaultTerms, AreZeroWithoutPixels) {
   const BoardSample sample = test::SynthesizeSamples({}).front();
-  const LensTerms terms = LensTermsOf(sample, test::TestBoard(), test::TestCamera(), 0.005, 0.3);
-  EXPECT_EQ(terms.NumErrors(), kNumLensErrors);
+  const CameraFaultTerms terms =
+      LensErrorTerms(sample, test::TestBoard(), test::TestCamera(), 0.005, 0.3);
+  EXPECT_EQ(terms.NumFaults(), kNumLensErrors);
   EXPECT_EQ(terms.information.norm(), 0.0);
-  EXPECT_EQ(terms.board_by_lens.norm(), 0.0);
+  EXPECT_EQ(terms.board_by_faults.norm(), 0.0);
 }
 
 TEST(RefineWithLens, FindsWhatIsWrongWithTheIntrinsics) {

@@ -1,4 +1,4 @@
-#include "core/likelihood/lens_terms.hpp"
+#include "core/likelihood/camera_faults.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -29,24 +29,24 @@ Matrix2Ld PixelByLens(const CameraModel& camera, const Eigen::Vector3d& point_ca
 
 }  // namespace
 
-LensTerms ChessboardTurnTerms() {
-  LensTerms terms;
-  terms.board_by_lens.setZero(6, kNumChessboardTurns);
-  terms.board_by_lens.topRows<kNumChessboardTurns>() = -Eigen::Matrix2d::Identity();
+CameraFaultTerms ChessboardTurnTerms() {
+  CameraFaultTerms terms;
+  terms.board_by_faults.setZero(6, kNumChessboardTurns);
+  terms.board_by_faults.topRows<kNumChessboardTurns>() = -Eigen::Matrix2d::Identity();
   terms.information.setZero(kNumChessboardTurns, kNumChessboardTurns);
   terms.pull.setZero(kNumChessboardTurns);
   terms.prior_sigmas.setConstant(kNumChessboardTurns, kPriorChessboardTurnRad);
   return terms;
 }
 
-LensTerms LensTermsOf(const BoardSample& sample,
-                      const BoardSpec& board,
-                      const CameraModel& camera,
-                      double lens_error,
-                      double corner_error_px) {
-  LensTerms terms;
+CameraFaultTerms LensErrorTerms(const BoardSample& sample,
+                                const BoardSpec& board,
+                                const CameraModel& camera,
+                                double lens_error,
+                                double corner_error_px) {
+  CameraFaultTerms terms;
   terms.prior_sigmas.setConstant(kNumLensErrors, lens_error);
-  terms.board_by_lens.setZero(6, kNumLensErrors);
+  terms.board_by_faults.setZero(6, kNumLensErrors);
   terms.information.setZero(kNumLensErrors, kNumLensErrors);
   terms.pull.setZero(kNumLensErrors);
   const std::vector<Eigen::Vector3d> corners_board_m = board.InnerCornersBoardM();
@@ -71,8 +71,8 @@ LensTerms LensTermsOf(const BoardSample& sample,
     row += 2;
   }
   const Matrix6d of_board = J.transpose() * J;
-  terms.board_by_lens = -of_board.ldlt().solve(J.transpose() * L);
-  const Eigen::MatrixXd left = L + J * terms.board_by_lens;
+  terms.board_by_faults = -of_board.ldlt().solve(J.transpose() * L);
+  const Eigen::MatrixXd left = L + J * terms.board_by_faults;
   const double weight = 1.0 / (corner_error_px * corner_error_px);
   terms.information = weight * left.transpose() * left;
   terms.pull = -weight * left.transpose() * e;
@@ -83,10 +83,10 @@ BoardPose CorrectedCameraPose(const BoardSample& sample,
                               const BoardSpec& board,
                               const CameraModel& camera,
                               const LensErrors& errors) {
-  const LensTerms terms =
-      LensTermsOf(sample, board, camera, /*lens_error=*/1.0, /*corner_error_px=*/1.0);
+  const CameraFaultTerms terms =
+      LensErrorTerms(sample, board, camera, /*lens_error=*/1.0, /*corner_error_px=*/1.0);
   BoardPose pose = PoseFromTransform(
-      PerturbLeft(TransformFromPose(sample.camera.pose), terms.board_by_lens * errors), board);
+      PerturbLeft(TransformFromPose(sample.camera.pose), terms.board_by_faults * errors), board);
   pose.covariance = sample.camera.pose.covariance;
   return pose;
 }

@@ -28,8 +28,9 @@ class Heartbeat {
   Heartbeat(Bus& bus,
             Module& module,
             const std::string& channel,
-            const std::filesystem::path& session_dir)
-      : module_(module), status_(bus, channel, session_dir) {}
+            const ProcessArgs& args)
+      : module_(module),
+        status_(bus, channel, args.session_dir.value_or(""), args.name.value_or(module.Name())) {}
 
   void BeatIfDue() {
     const Clock::time_point now = Clock::now();
@@ -96,9 +97,9 @@ bool StopOnSignal::IsRequested() const { return g_is_stop_requested != 0; }
 void Spin(Bus& bus,
           Module& module,
           const std::string& status_channel,
-          const std::filesystem::path& session_dir) {
+          const ProcessArgs& args) {
   const StopOnSignal stop;
-  Heartbeat heartbeat(bus, module, status_channel, session_dir);
+  Heartbeat heartbeat(bus, module, status_channel, args);
   try {
     RunUntilStopped(bus, module, stop, &heartbeat);
   } catch (const std::exception& error) {

@@ -9,13 +9,15 @@ namespace voqcal {
 /// Folders are relative to the file of `place`. With `lens`, the camera's numbers may be missing.
 /// @throws std::runtime_error if `place` does not tell which sensors are meant.
 void ReadRigSections(const RigPlace& place,
+                     SensorChoice choice,
                      YamlDocument* document,
                      Rig* rig,
                      LensInRig* lens = nullptr);
 
-/// The sensors that the file names; none if it is of one lidar and one camera.
+/// The sensors that the file names; none if it is of one lidar and one camera. Which of them are
+/// meant, the file may say where `place` does not.
 /// @throws std::runtime_error naming file, line and key if those sections are wrong; if `place`
 ///     names a sensor that is none of them.
-RigSensors ReadRigSensors(const RigPlace& place, YamlDocument* document);
+RigSensors ReadRigSensors(RigPlace* place, YamlDocument* document);
 
 }  // namespace voqcal

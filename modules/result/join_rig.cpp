@@ -174,7 +174,6 @@ const PairInTree* WeakestOf(const std::vector<PairInTree>& pairs) {
 }
 
 std::string AdviceOn(const RigExtrinsics& result) {
-  if (!result.network.IsUsable()) return "Show the board to sensors of both: " + result.network.problem;
   const std::vector<PairInTree> pairs = PairsInTree(result);
   const PairInTree* weakest = WeakestOf(pairs);
   if (weakest == nullptr) return "";

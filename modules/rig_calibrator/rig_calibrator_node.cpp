@@ -22,7 +22,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLookAtWorker{50};
 
-/// The sensors' processes come first: what they miss is lost. Of this thread, and those it starts.
+/// While samples are taken, the sensors' processes come first: what they miss is lost. Of this thread,
+/// and those it starts.
 void GiveWay() {
   constexpr int kNice = 10;
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
@@ -141,7 +142,7 @@ void RigCalibratorNode::Start(std::size_t index) {
                       message = *pair.newest,
                       samples = std::move(samples),
                       sessions = sessions_]() mutable {
-                       GiveWay();
+                       if (message.is_finished == 0) GiveWay();
                        sessions[index] = chain->Calibrate(message, samples);
                        Outcome outcome = {sessions[index],
                                           JoinSessions(sessions, "", made_from_)};

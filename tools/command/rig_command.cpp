@@ -109,12 +109,18 @@ void Finish(Clock::time_point end, Hearing* hearing) {
   }
 }
 
-/// Until the tree is made of all that the collectors have.
-void WaitForTree(Clock::time_point end, Hearing* hearing) {
+/// Until the tree is made of all that the collectors have: a pair after the other.
+void WaitForTree(Clock::duration wait, Hearing* hearing) {
   const auto is_done = [hearing](std::size_t pair, const samples_t& samples) {
     return hearing->IsMadeOf(pair, samples);
   };
+  Clock::time_point end = Clock::now() + wait;
+  std::int64_t revision = -1;
   while (!hearing->Without(is_done).empty()) {
+    if (hearing->rig() && hearing->rig()->revision != revision) {
+      revision = hearing->rig()->revision;
+      end = Clock::now() + wait;
+    }
     if (Clock::now() > end) {
       throw std::runtime_error(hearing->rig()
                                    ? "rig_calibrator is still at work on " + hearing->Without(is_done)
@@ -141,10 +147,9 @@ void WriteReports(const RigCommand& command, const std::vector<Rig>& pairs) {
 
 void FinishAndWait(const RigCommand& command, const std::vector<Rig>& pairs, Bus* bus) {
   Hearing hearing(pairs, bus);
-  const Clock::time_point end =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(command.wait);
-  Finish(end, &hearing);
-  WaitForTree(end, &hearing);
+  const auto wait = std::chrono::duration_cast<Clock::duration>(command.wait);
+  Finish(Clock::now() + wait, &hearing);
+  WaitForTree(wait, &hearing);
   const rig_extrinsics_t rig = *hearing.rig();
   std::fputs(TableOfPairs(rig).c_str(), stdout);
   if (!command.session.empty() && rig.problem.empty()) {

@@ -13,7 +13,8 @@ namespace voqcal {
 /// A command to all sample collectors of a rig of several sensors.
 struct RigCommand {
   std::string command;
-  std::chrono::duration<double> wait{0};  ///< After finish, for the result; 0: not at all.
+  /// After finish, for the result, without news of it; 0: not at all.
+  std::chrono::duration<double> wait{0};
   std::filesystem::path session;          ///< After that, each pair's report is made there; or empty.
 };
 

@@ -51,9 +51,7 @@ template <typename World>
 class SimulatedCameraSource : public CameraSource {
  public:
   SimulatedCameraSource(std::unique_ptr<World> world, const CameraDriverOptions& options)
-      : world_(std::move(world)),
-        rate_hz_(options.rate_hz),
-        jpeg_quality_(options.jpeg_quality) {}
+      : world_(std::move(world)), rate_hz_(options.rate_hz), jpeg_quality_(options.jpeg_quality) {}
 
   std::optional<TimedImage> Next() override {
     const double time_s = static_cast<double>(num_images_) / rate_hz_;

@@ -54,12 +54,11 @@ Stream DetectorStream(const std::string& channel,
 }  // namespace
 
 SessionPlan PlanOfPair(const Channels& channels) {
-  return {
-      AllModuleNames(),
-      {StreamOf(channels.lidar_points, "lidar_driver", "lidar"),
-       StreamOf(channels.camera_image, "camera_driver", "camera"),
-       DetectorStream(channels.lidar_board, "lidar_board_detector", channels.lidar_points),
-       DetectorStream(channels.camera_board, "camera_board_detector", channels.camera_image)}};
+  return {AllModuleNames(),
+          {StreamOf(channels.lidar_points, "lidar_driver", "lidar"),
+           StreamOf(channels.camera_image, "camera_driver", "camera"),
+           DetectorStream(channels.lidar_board, "lidar_board_detector", channels.lidar_points),
+           DetectorStream(channels.camera_board, "camera_board_detector", channels.camera_image)}};
 }
 
 SessionPlan PlanOfRig(const std::filesystem::path& rig, const std::vector<Rig>& pairs) {

@@ -38,11 +38,11 @@ struct HeardModule {
 /// A channel that samples are made of, as its readers count it.
 struct Stream {
   std::string channel;
-  std::string sender;            ///< The module that sends it.
-  std::string name;   ///< "lidar", "camera"; of a detector its module's name.
-  std::string input;  ///< The channel that the sender reads; empty: it is a sensor's driver.
-  bool has_reader = false;       ///< Of those heard; else nobody here can say whether it comes.
-  bool has_come = false;         ///< While its readers were heard...
+  std::string sender;       ///< The module that sends it.
+  std::string name;         ///< "lidar", "camera"; of a detector its module's name.
+  std::string input;        ///< The channel that the sender reads; empty: it is a sensor's driver.
+  bool has_reader = false;  ///< Of those heard; else nobody here can say whether it comes.
+  bool has_come = false;    ///< While its readers were heard...
   bool has_come_before = false;  ///< ...or before: they had counted it.
   HeardModule::Time last_news{};
   double usual_gap_s = 0;

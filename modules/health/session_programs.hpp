@@ -16,14 +16,14 @@ inline constexpr char kRigCalibrator[] = "rig_calibrator";
 /// @param name  of the module, or of one of several such (SessionProgram).
 bool IsDriver(const std::string& name);
 
-/// The module that such a name is of: "lidar_driver" of "lidar_driver_front"; empty if it is none of
-/// a session's.
+/// The module that such a name is of: "lidar_driver" of "lidar_driver_front"; empty if it is none
+/// of a session's.
 std::string ModuleOf(const std::string& name);
 
 /// One process of a session.
 struct SessionProgram {
-  /// In MODULE_STATUS, under the supervisor and of its output: the module's; where a rig has one for
-  /// each sensor or pair, "lidar_driver_front", "sample_collector_front_left".
+  /// In MODULE_STATUS, under the supervisor and of its output: the module's; where a rig has one
+  /// for each sensor or pair, "lidar_driver_front", "sample_collector_front_left".
   std::string name;
   std::string module;  ///< Its folder and its binary.
   /// The sensors that it is started with ("front", "front,left"); empty: as the rig was given.
@@ -31,8 +31,8 @@ struct SessionProgram {
   std::string folder;  ///< Of its files, within the session's; empty: that itself.
 };
 
-/// What a session runs: of a pair every module once; of several sensors a driver and a detector each,
-/// a sample collector a pair, and the rig's calibrator. In the order of the flow.
+/// What a session runs: of a pair every module once; of several sensors a driver and a detector
+/// each, a sample collector a pair, and the rig's calibrator. In the order of the flow.
 /// @throws as PairsOfRig.
 std::vector<SessionProgram> ProgramsOfRig(const std::filesystem::path& rig);
 

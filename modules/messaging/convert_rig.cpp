@@ -47,8 +47,7 @@ void FillTree(const RigExtrinsics& result, rig_extrinsics_t* message) {
   for (std::size_t i = 0; i < network.sensors.size(); ++i) {
     rig_sensor_t sensor{};
     sensor.name = network.sensors[i];
-    const bool is_lidar =
-        std::count(result.lidars.begin(), result.lidars.end(), sensor.name) > 0;
+    const bool is_lidar = std::count(result.lidars.begin(), result.lidars.end(), sensor.name) > 0;
     sensor.kind = is_lidar ? "lidar" : "camera";
     sensor.T_reference_sensor = ToMessage(network.T_reference_sensor[i]);
     message->sensors.push_back(sensor);

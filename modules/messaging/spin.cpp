@@ -25,10 +25,7 @@ void RequestStop(int /*signal*/) { g_is_stop_requested = 1; }
 /// Republish and status whenever a second has passed.
 class Heartbeat {
  public:
-  Heartbeat(Bus& bus,
-            Module& module,
-            const std::string& channel,
-            const ProcessArgs& args)
+  Heartbeat(Bus& bus, Module& module, const std::string& channel, const ProcessArgs& args)
       : module_(module),
         status_(bus, channel, args.session_dir.value_or(""), args.name.value_or(module.Name())) {}
 
@@ -94,10 +91,7 @@ StopOnSignal::~StopOnSignal() {
 
 bool StopOnSignal::IsRequested() const { return g_is_stop_requested != 0; }
 
-void Spin(Bus& bus,
-          Module& module,
-          const std::string& status_channel,
-          const ProcessArgs& args) {
+void Spin(Bus& bus, Module& module, const std::string& status_channel, const ProcessArgs& args) {
   const StopOnSignal stop;
   Heartbeat heartbeat(bus, module, status_channel, args);
   try {

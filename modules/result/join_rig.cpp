@@ -167,9 +167,10 @@ const PairInTree* WeakestOf(const std::vector<PairInTree>& pairs) {
   const auto error_m = [](const PairInTree& pair) {
     return std::hypot(kTypicalRangeM * pair.sigma_rad, pair.sigma_m);
   };
-  const auto weakest = std::max_element(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
-    return error_m(a) < error_m(b);
-  });
+  const auto weakest =
+      std::max_element(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
+        return error_m(a) < error_m(b);
+      });
   return weakest == pairs.end() ? nullptr : &*weakest;
 }
 

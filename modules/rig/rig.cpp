@@ -71,7 +71,7 @@ Rig Load(const std::filesystem::path& path, SensorChoice choice, LensInRig* lens
   Rig rig;
   rig.path = path;
   rig.sha256 = Sha256OfBytes(text);
-  ReadRigSections(place, choice, &document, &rig, lens);
+  ReadRigSections(place, &document, &rig, lens, choice);
   document.ThrowIfWrong();
   rig.remarks = document.Remarks();
   return rig;

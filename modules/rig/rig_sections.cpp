@@ -326,7 +326,7 @@ RigSensors ReadRigSensors(RigPlace* place, YamlDocument* document) {
 }
 
 void ReadRigSections(
-    const RigPlace& place, SensorChoice choice, YamlDocument* document, Rig* rig, LensInRig* lens) {
+    const RigPlace& place, YamlDocument* document, Rig* rig, LensInRig* lens, SensorChoice choice) {
   YamlSection top(document);
   SensorEntries entries = ReadSensorEntries(&top);
   document->ThrowIfWrong();  // before any of them is chosen

@@ -9,10 +9,10 @@ namespace voqcal {
 /// Folders are relative to the file of `place`. With `lens`, the camera's numbers may be missing.
 /// @throws std::runtime_error if `place` does not tell which sensors are meant.
 void ReadRigSections(const RigPlace& place,
-                     SensorChoice choice,
                      YamlDocument* document,
                      Rig* rig,
-                     LensInRig* lens = nullptr);
+                     LensInRig* lens = nullptr,
+                     SensorChoice choice = SensorChoice::kPair);
 
 /// The sensors that the file names; none if it is of one lidar and one camera. Which of them are
 /// meant, the file may say where `place` does not.

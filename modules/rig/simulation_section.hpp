@@ -10,8 +10,9 @@ namespace voqcal {
 /// that they share.
 void ReadSimulation(YamlSection* top, SimulationOptions* options);
 
-/// Rig::simulated_rig, if the file's sensors are several and the simulator's. All are, or none: there
-/// is one world, with one board. `rig` has its `simulation` and what is said of `pair` already.
+/// Rig::simulated_rig, if the file's sensors are several and the simulator's. All are, or none:
+/// there is one world, with one board. `rig` has its `simulation` and what is said of `pair`
+/// already.
 void ReadSimulatedRig(YamlSection* top,
                       const PairOfEntries& pair,
                       SensorEntries* entries,

@@ -13,8 +13,8 @@
 
 namespace voqcal {
 
-/// What makes a pair's result of its samples: the modules of a live pair, one after the other on one
-/// bus. The same samples give the bytes that these give as processes.
+/// What makes a pair's result of its samples: the modules of a live pair, one after the other on
+/// one bus. The same samples give the bytes that these give as processes.
 class PairChain {
  public:
   /// @param bus  hears CALIB_SAMPLES; borrowed.

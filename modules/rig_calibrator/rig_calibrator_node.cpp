@@ -13,7 +13,12 @@
 #include "files/atomic_file.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_rig.hpp"
+#include "messaging/encode.hpp"
 #include "messaging/made_from.hpp"
+#include "voqcal/assessment_t.hpp"
+#include "voqcal/extrinsic_averaged_t.hpp"
+#include "voqcal/extrinsic_refined_t.hpp"
+#include "voqcal/voq_sets_t.hpp"
 
 namespace voqcal {
 namespace {
@@ -22,8 +27,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLookAtWorker{50};
 
-/// While samples are taken, the sensors' processes come first: what they miss is lost. Of this thread,
-/// and those it starts.
+/// While samples are taken, the sensors' processes come first: what they miss is lost. Of this
+/// thread, and those it starts.
 void GiveWay() {
   constexpr int kNice = 10;
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
@@ -39,6 +44,15 @@ PairSession EmptySession(const Rig& rig) {
   return session;
 }
 
+template <typename Message>
+void KeepSaid(const std::string& channel,
+              Bus* bus,
+              std::map<std::string, std::vector<std::uint8_t>>* said) {
+  bus->Subscribe<Message>(channel, Queue::kState, [channel, said](const Message& message) {
+    (*said)[channel] = EncodeMessage(message);
+  });
+}
+
 /// A tree that is not of these samples must not be taken for theirs.
 void WriteResult(const std::filesystem::path& file, const RigExtrinsics& rig) {
   if (rig.network.IsUsable()) return WriteFileAtomically(file, ToYaml(rig));
@@ -49,7 +63,12 @@ void WriteResult(const std::filesystem::path& file, const RigExtrinsics& rig) {
 }  // namespace
 
 RigCalibratorNode::Chain::Chain(const Rig& rig_in, const std::filesystem::path& folder)
-    : rig(rig_in), bus("memq://"), modules(rig, &bus, folder) {}
+    : rig(rig_in), bus("memq://"), modules(rig, &bus, folder) {
+  KeepSaid<voq_sets_t>(rig.channels.voq_sets, &bus, &said);
+  KeepSaid<extrinsic_averaged_t>(rig.channels.extrinsic_averaged, &bus, &said);
+  KeepSaid<extrinsic_refined_t>(rig.channels.extrinsic_refined, &bus, &said);
+  KeepSaid<assessment_t>(rig.channels.calib_assessment, &bus, &said);
+}
 
 PairSession RigCalibratorNode::Chain::Calibrate(const samples_t& message,
                                                 const std::vector<BoardSample>& samples) {
@@ -110,7 +129,14 @@ bool RigCalibratorNode::Step() {
   return false;
 }
 
-void RigCalibratorNode::Republish() { bus_.Publish(channel_, message_); }
+void RigCalibratorNode::Republish() {
+  bus_.Publish(channel_, message_);
+  for (const Pair& pair : pairs_) {
+    for (const auto& [channel, bytes] : pair.said) {
+      bus_.PublishBytes(channel, bytes.data(), bytes.size());
+    }
+  }
+}
 
 bool RigCalibratorNode::IsToDo(const Pair& pair) const {
   return pair.newest && !(pair.made_of.revision == pair.newest->revision &&
@@ -135,24 +161,25 @@ void RigCalibratorNode::Start(std::size_t index) {
   }
   working_on_ = index;
   pair.made_of = {pair.newest->utime, pair.newest->revision, pair.newest->log_sha256};
-  work_ = std::async(std::launch::async,
-                     [this,
-                      index,
-                      chain = pair.chain.get(),
-                      message = *pair.newest,
-                      samples = std::move(samples),
-                      sessions = sessions_]() mutable {
-                       if (message.is_finished == 0) GiveWay();
-                       sessions[index] = chain->Calibrate(message, samples);
-                       Outcome outcome = {sessions[index],
-                                          JoinSessions(sessions, "", made_from_)};
-                       WriteResult(result_file_, outcome.rig);
-                       return outcome;
-                     });
+  work_ = std::async(
+      std::launch::async,
+      [this,
+       index,
+       chain = pair.chain.get(),
+       message = *pair.newest,
+       samples = std::move(samples),
+       sessions = sessions_]() mutable {
+        if (message.is_finished == 0) GiveWay();
+        sessions[index] = chain->Calibrate(message, samples);
+        Outcome outcome = {sessions[index], chain->said, JoinSessions(sessions, "", made_from_)};
+        WriteResult(result_file_, outcome.rig);
+        return outcome;
+      });
 }
 
 void RigCalibratorNode::Take(const Outcome& outcome) {
   sessions_[working_on_] = outcome.session;
+  pairs_[working_on_].said = outcome.said;
   Count(outcome.session.pair.problem.empty() ? "calibrations" : "without a result");
   const std::int64_t revision = message_.revision + 1;
   message_ = ToMessage(outcome.rig);

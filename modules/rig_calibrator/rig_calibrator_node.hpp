@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,12 +19,13 @@
 
 namespace voqcal {
 
-/// CALIB_SAMPLES of every pair in, RIG_EXTRINSICS and the session's files out: calibrates a pair when
-/// its samples have changed, and joins all to one tree. A worker does that, one pair after the other,
-/// each on its newest samples: messages are heard meanwhile.
+/// CALIB_SAMPLES of every pair in, RIG_EXTRINSICS, what a pair's own modules would say (VOQ_SETS to
+/// CALIB_ASSESSMENT) and the session's files out: calibrates a pair when its samples have changed,
+/// and joins all to one tree. A worker does that, one pair after the other, each on its newest
+/// samples: messages are heard meanwhile.
 ///
-/// The files are those that calibrate_rig leaves, of the same samples to the byte: extrinsic.yaml in
-/// the folder of each pair, rig_extrinsics.yaml beside them.
+/// The files are those that calibrate_rig leaves, of the same samples to the byte: extrinsic.yaml
+/// in the folder of each pair, rig_extrinsics.yaml beside them.
 class RigCalibratorNode : public Module {
  public:
   /// @param pairs  LoadPairs of a rig.
@@ -42,6 +44,9 @@ class RigCalibratorNode : public Module {
   void Republish() override;
 
  private:
+  /// Encoded messages by channel.
+  using Messages = std::map<std::string, std::vector<std::uint8_t>>;
+
   /// A pair as the worker has it, which alone touches it while it works.
   struct Chain {
     Chain(const Rig& rig, const std::filesystem::path& folder);
@@ -49,6 +54,7 @@ class RigCalibratorNode : public Module {
 
     Rig rig;
     Bus bus;
+    Messages said;  ///< By its modules, the newest.
     PairChain modules;
   };
   /// Which samples a session was made from.
@@ -63,9 +69,11 @@ class RigCalibratorNode : public Module {
     std::unique_ptr<Chain> chain;
     std::optional<samples_t> newest;
     MadeOf made_of;
+    Messages said;
   };
   struct Outcome {
     PairSession session;
+    Messages said;
     RigExtrinsics rig;
   };
 

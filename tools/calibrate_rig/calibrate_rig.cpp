@@ -165,10 +165,8 @@ void CalibrateRig(const CalibrateRigArgs& args) {
     const ScratchFolder scratch(args.out);
     sessions = CalibratePairs(pairs, args.log, args.times, {scratch.path(), args.out});
   }
-  const RigExtrinsics result =
-      JoinSessions(sessions,
-                   reference,
-                   {pairs.front().rig_name, pairs.front().sha256, VOQCAL_VERSION});
+  const RigExtrinsics result = JoinSessions(
+      sessions, reference, {pairs.front().rig_name, pairs.front().sha256, VOQCAL_VERSION});
   RequireOnePiece(args, result);
   WriteFileAtomically(args.out / kRigResultName, ToYaml(result));
   std::cout << Summary(result) << "written\n  " << (args.out / kRigResultName).string() << '\n';

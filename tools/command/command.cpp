@@ -214,8 +214,10 @@ int main(int argc, char** argv) {
       ->required()
       ->check(CLI::IsMember({"capture", "discard", "finish", "reset"}));
   app.add_option("--sample", args.sample_id, "Which sample to discard; without it the newest");
-  app.add_option(
-         "--wait", args.wait_s, "After finish: wait for the result, at most this many seconds (of several sensors: for each pair's)")
+  app.add_option("--wait",
+                 args.wait_s,
+                 "After finish: wait for the result, at most this many seconds (of several "
+                 "sensors: for each pair's)")
       ->check(CLI::NonNegativeNumber);
   auto* which = app.add_option_group("which", "At least one of:")->require_option(1, 2);
   which

@@ -36,10 +36,9 @@ class Hearing {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       names_.push_back(PairName(pairs[i].lidar_name, pairs[i].camera_name));
       bus_.Keep(pairs[i].channels.calib_samples, &samples_[i]);
-      bus_.Subscribe<event_t>(
-          pairs[i].channels.calib_event, Queue::kEvery, [this, i](const event_t& m) {
-            events_.emplace_back(names_[i], m);
-          });
+      bus_.Subscribe<event_t>(pairs[i].channels.calib_event,
+                              Queue::kEvery,
+                              [this, i](const event_t& m) { events_.emplace_back(names_[i], m); });
     }
     bus_.Keep(pairs.front().channels.rig_extrinsics, &rig_);
     command_channel_ = pairs.front().channels.calib_command;
@@ -122,9 +121,9 @@ void WaitForTree(Clock::duration wait, Hearing* hearing) {
       end = Clock::now() + wait;
     }
     if (Clock::now() > end) {
-      throw std::runtime_error(hearing->rig()
-                                   ? "rig_calibrator is still at work on " + hearing->Without(is_done)
-                                   : "rig_calibrator did not answer: is it running?");
+      throw std::runtime_error(hearing->rig() ? "rig_calibrator is still at work on " +
+                                                    hearing->Without(is_done)
+                                              : "rig_calibrator did not answer: is it running?");
     }
     hearing->Hear();
   }
@@ -177,10 +176,11 @@ void SendAndTell(const RigCommand& command, const std::vector<Rig>& pairs, Bus* 
     for (const auto& [pair, event] : hearing.TakeEvents()) {
       if (event.kind != wanted) continue;
       ++num_done;
-      std::printf("%s: %s%s\n",
-                  pair.c_str(),
-                  event.kind.c_str(),
-                  event.sample_id == 0 ? "" : (" sample " + std::to_string(event.sample_id)).c_str());
+      std::printf(
+          "%s: %s%s\n",
+          pair.c_str(),
+          event.kind.c_str(),
+          event.sample_id == 0 ? "" : (" sample " + std::to_string(event.sample_id)).c_str());
     }
   }
   if (num_done > 0) return;

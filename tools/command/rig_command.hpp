@@ -15,7 +15,7 @@ struct RigCommand {
   std::string command;
   /// After finish, for the result, without news of it; 0: not at all.
   std::chrono::duration<double> wait{0};
-  std::filesystem::path session;          ///< After that, each pair's report is made there; or empty.
+  std::filesystem::path session;  ///< After that, each pair's report is made there; or empty.
 };
 
 /// Sends it, says what came of it, and after finish waits for the tree.

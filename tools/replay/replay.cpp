@@ -54,8 +54,8 @@ Expected<std::int64_t, std::string> UtimeOf(const LogEvent& event) {
   return message.utime;
 }
 
-/// One sensor's frames: a detector answers each with a board or a miss, and the collectors that hear it
-/// count them.
+/// One sensor's frames: a detector answers each with a board or a miss, and the collectors that
+/// hear it count them.
 class Frames {
  public:
   void Sent(std::int64_t utime) {
@@ -137,7 +137,8 @@ class Player {
                   static_cast<long long>(reader.num_damaged()));
     }
     std::int64_t num_unanswered = 0;
-    ForEach([&num_unanswered](const Sensor& each) { num_unanswered += each.frames.num_unanswered(); });
+    ForEach(
+        [&num_unanswered](const Sensor& each) { num_unanswered += each.frames.num_unanswered(); });
     if (num_unanswered == 0) return;
     throw std::runtime_error(std::to_string(num_unanswered) +
                              " frames were answered by no detector: was one killed?");
@@ -228,8 +229,7 @@ class Player {
 
   void OnStatus(const module_status_t& status) {
     const std::string module = ModuleOf(status.module);
-    const bool is_detector =
-        module == "lidar_board_detector" || module == "camera_board_detector";
+    const bool is_detector = module == "lidar_board_detector" || module == "camera_board_detector";
     for (const channel_status_t& channel : status.channels) {
       Sensors& sensors = lidars_.count(channel.channel) != 0 ? lidars_ : cameras_;
       const auto sensor = sensors.find(channel.channel);

@@ -148,8 +148,7 @@ std::string StatusPage::LineOf(const std::string& module, Time now) const {
     return Format("%-*s %s\n", NameWidth(), module.c_str(), how.c_str());
   }
   const HeardModule& heard = found->second;
-  std::string text =
-      Format("%-*s %s", NameWidth(), module.c_str(), heard.status.state.c_str());
+  std::string text = Format("%-*s %s", NameWidth(), module.c_str(), heard.status.state.c_str());
   if (health == ModuleHealth::kSilent) {
     text += Format("  SILENT for %.0f s", std::chrono::duration<double>(now - heard.at).count());
   }

@@ -30,8 +30,8 @@ class StatusPage {
   /// lost.
   bool IsAllGood(Time now) const;
 
-  /// What is wrong, then a line for each module, of several sensors the table of their pairs, the last
-  /// events, who is silent and what was lost: of a pair, a terminal of 24 rows holds it.
+  /// What is wrong, then a line for each module, of several sensors the table of their pairs, the
+  /// last events, who is silent and what was lost: of a pair, a terminal of 24 rows holds it.
   std::string Text(Time now) const;
 
   /// The same with all faults, and some lines for each module: rates of each channel, losses, most

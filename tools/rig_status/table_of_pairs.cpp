@@ -26,8 +26,7 @@ std::string TableOfPairs(const rig_extrinsics_t& rig) {
   std::size_t width = 8;
   for (const rig_pair_t& pair : rig.pairs) width = std::max(width, pair.name.size());
   const int name_width = static_cast<int>(width);
-  std::string text =
-      Format("%-*s samples  1 sigma in the tree   verdict\n", name_width, "pair");
+  std::string text = Format("%-*s samples  1 sigma in the tree   verdict\n", name_width, "pair");
   for (const rig_pair_t& pair : rig.pairs) {
     text += Format("%-*s %7d  %s  %s%s\n",
                    name_width,

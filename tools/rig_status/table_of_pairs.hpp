@@ -6,8 +6,8 @@
 
 namespace voqcal {
 
-/// A line for each pair of a rig: its samples, how well the tree knows it, its verdict or why there is
-/// none; then the tree's verdict, the weakest pair and what to do next.
+/// A line for each pair of a rig: its samples, how well the tree knows it, its verdict or why there
+/// is none; then the tree's verdict, the weakest pair and what to do next.
 std::string TableOfPairs(const rig_extrinsics_t& rig);
 
 }  // namespace voqcal

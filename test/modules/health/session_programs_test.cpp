@@ -13,8 +13,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-constexpr char kTruck[] =
-    "rig: truck\nlidars: {front: , rear: }\ncameras: {left: , right: }\n";
+constexpr char kTruck[] = "rig: truck\nlidars: {front: , rear: }\ncameras: {left: , right: }\n";
 
 std::vector<std::string> NamesOf(const std::vector<SessionProgram>& programs) {
   std::vector<std::string> names;

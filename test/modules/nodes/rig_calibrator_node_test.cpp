@@ -64,7 +64,8 @@ TEST_F(RigCalibratorNodeTest, SaysWhatToJoinUntilAllPairsHoldTheRig) {
   EXPECT_EQ(node_.State(), "waiting for samples");
   Send(0, 8, 8);
   Work();
-  EXPECT_THAT(newest().problem, HasSubstr("no pair joins these parts of the rig: front, left | right"));
+  EXPECT_THAT(newest().problem,
+              HasSubstr("no pair joins these parts of the rig: front, left | right"));
   EXPECT_EQ(newest().num_sensors, 0);
   EXPECT_THAT(newest().pairs,
               ElementsAre(Field(&rig_pair_t::problem, IsEmpty()),
@@ -83,8 +84,18 @@ TEST_F(RigCalibratorNodeTest, SaysWhatToJoinUntilAllPairsHoldTheRig) {
   EXPECT_EQ(newest().num_rows, 18);
   EXPECT_EQ(newest().pairs[1].samples_revision, 10);
   EXPECT_THAT(newest().advice, HasSubstr("Show the board to " + newest().weakest_pair));
-  EXPECT_THAT(ReadWholeFile(folder_.path() / "rig_extrinsics.yaml"), HasSubstr("\nreference: front"));
+  EXPECT_THAT(ReadWholeFile(folder_.path() / "rig_extrinsics.yaml"),
+              HasSubstr("\nreference: front"));
   EXPECT_EQ(node_.State(), "running: 2 of 2 pairs have an extrinsic");
+}
+
+TEST_F(RigCalibratorNodeTest, SaysOfAPairWhatItsOwnModulesWould) {
+  const test::Inbox<assessment_t> assessments(&bus_, "CALIB_ASSESSMENT");
+  Send(1, 8, 8);
+  Work();
+  ASSERT_THAT(assessments.messages, ::testing::SizeIs(1));
+  EXPECT_EQ(assessments.messages[0].samples_revision, 8);
+  EXPECT_EQ(assessments.messages[0].num_samples, newest().pairs[1].num_samples);
 }
 
 TEST_F(RigCalibratorNodeTest, WorksOnTheNewestSamplesAloneAndOnThemOnce) {

@@ -305,8 +305,7 @@ TEST(NamedSensors, TheFileItselfMayNameThoseThatAreMeant) {
 /// Lines 4 to 6, 7 to 9, and the world in line 10.
 std::string SimulatedTruck() {
   const std::string place = "{quaternion_xyzw: [0, 0, 0, 1], translation_m: [1, 2, 3]}";
-  const std::string lidar =
-      "lidar_driver: {source: simulator}, simulation: {T_rig_lidar: " + place;
+  const std::string lidar = "lidar_driver: {source: simulator}, simulation: {T_rig_lidar: " + place;
   const std::string camera =
       ", camera_driver: {source: simulator}, simulation: {T_rig_camera: " + place + "}}\n";
   return kHead + std::string("lidars:\n") + "  front: {" + lidar + "}}\n  rear: {" + lidar +

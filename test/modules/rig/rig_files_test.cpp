@@ -44,7 +44,7 @@ TEST(SimulatedRig, ListsEveryOptionWithItsTrueDefault) {
   const std::vector<std::string> lines = LinesOf(text);
   YamlDocument document(path.string(), text);
   Rig rig;
-  ReadRigSections({path, {}}, SensorChoice::kPair, &document, &rig);
+  ReadRigSections({path, {}}, &document, &rig);
   document.ThrowIfWrong();
   EXPECT_GT(document.known_keys().size(), 60U);
   for (const YamlDocument::KnownKey& key : document.known_keys()) {

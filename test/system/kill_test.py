@@ -10,6 +10,7 @@ its own.
 """
 
 import argparse
+import collections
 import os
 import pathlib
 import random
@@ -98,12 +99,14 @@ def kill_module(session, module):
 
 
 def results_of_recording(rig, session):
-    """What calibrate_rig makes of it."""
+    """What calibrate_rig makes of it, and how many frames of each sensor it holds: the recorder may have lost some."""
     offline = session.parent / "offline"
     shutil.rmtree(offline, ignore_errors=True)
     subprocess.run([BIN / "calibrate_rig", rig, "--log", session / "raw.lcm", "--out", offline], check=True,
                    capture_output=True)
-    return results_of(offline)
+    frames = collections.Counter(channel for channel, _ in log_events(session / "raw.lcm")
+                                 if channel.startswith(("LIDAR_POINTS", "CAMERA_IMAGE")))
+    return results_of(offline), frames
 
 
 def problems_of(session, status, expected):
@@ -137,8 +140,9 @@ def run_undisturbed(rig, session):
         sys.exit(f"the undisturbed session failed: {said}")
     result = results_of(session)
     if "rig_extrinsics.yaml" in result:
-        if results_of_recording(rig, session) != result:
-            sys.exit(f"calibrate_rig makes another result of {session}/raw.lcm")
+        recorded, frames = results_of_recording(rig, session)
+        if recorded != result:
+            sys.exit(f"calibrate_rig makes another result of {session}/raw.lcm, which has {dict(frames)}")
     return result, duration
 
 
@@ -183,7 +187,7 @@ def main():
                                for (module, _), is_killed in zip(kills, are_killed))
         wanted = expected
         if is_driver_killed and "rig_extrinsics.yaml" in expected:
-            wanted = results_of_recording(args.rig, session)
+            wanted, _ = results_of_recording(args.rig, session)
         problems = problems_of(session, run.returncode, wanted)
         num_good += not problems
         told = ", ".join(f"{module} after {delay:.2f} s" for module, delay in kills)

@@ -26,7 +26,8 @@ std::string ReplacedAll(std::string text, const std::string& from, const std::st
   return text;
 }
 
-/// config/rigs/simulated_several.yaml made short and small: 12 near stops, images of 640 x 400.
+/// config/rigs/simulated_several.yaml made short and small: 12 near stops, images of 640 x 400,
+/// lidars of few points.
 std::string SmallRigText() {
   std::string text =
       ReadWholeFile(std::string(VOQCAL_SOURCE_DIR) + "/config/rigs/simulated_several.yaml");
@@ -41,6 +42,7 @@ std::string SmallRigText() {
       {"fy_px: 801.5", "fy_px: 400.75"},
       {"fx_px: 780.0", "fx_px: 390.0"},
       {"fy_px: 781.5", "fy_px: 390.75"},
+      {"pattern: raster", "pattern: vlp16"},
       {"num_poses: 40", "num_poses: 12"},
       {"hold_s: 1.5", "hold_s: 0.8"},
       {"move_s: 0.5", "move_s: 0.4"},
@@ -116,7 +118,7 @@ TEST_F(LiveRig, WhatCannotBeEndsInALine) {
           text, "  left:\n", "  left:\n    channels: {camera_image: CAMERA_IMAGE_front}\n"));
   EXPECT_THAT(error_of(one_channel), HasSubstr("cameras.left.channels.camera_image must differ"));
   const std::string two_worlds =
-      folder_.Write("two_worlds.yaml", test::Replaced(text, "pattern: raster", "seed: 2"));
+      folder_.Write("two_worlds.yaml", test::Replaced(text, "pattern: vlp16", "seed: 2"));
   EXPECT_THAT(error_of(two_worlds), HasSubstr("lidars.bumper.simulation.seed is not a known key"));
   EXPECT_THAT(test::NamesIn(folder_.path()), Not(Contains("session")));
 }

@@ -1,6 +1,7 @@
 #include "rig_status/status_page.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -217,6 +218,37 @@ TEST(StatusPage, KeepsTheLastFiveEvents) {
 }
 
 // Of all modules, with more faults and events than have room.
+TEST(StatusPage, ShowsThePairsOfARigAndWhatHelpsThemNext) {
+  StatusPage page(PlanOfPair({}), {}, At(0));
+  rig_extrinsics_t rig{};
+  rig.verdict_headline = "Good.";
+  rig.advice = "Show the board to front_left.";
+  rig.weakest_pair = "front_left";
+  rig_pair_t pair{};
+  pair.has_session = 1;
+  pair.name = "front_left";
+  pair.num_samples = 23;
+  pair.sigma_rad = 1e-3;
+  pair.sigma_m = 2e-3;
+  pair.verdict_grade = "good";
+  pair.verdict_headline = "Good.";
+  rig.pairs.push_back(pair);
+  pair.name = "rear_left";
+  pair.num_samples = 0;
+  pair.sigma_rad = pair.sigma_m = std::numeric_limits<double>::quiet_NaN();
+  pair.problem = "the two never saw the board rest at one time";
+  rig.pairs.push_back(pair);
+  page.Take(rig);
+  const std::string text = page.Text(At(1));
+  EXPECT_THAT(text,
+              HasSubstr("front_left      23   0.057 deg     2.0 mm  good: Good. (weakest)\n"));
+  EXPECT_THAT(text, HasSubstr("  the two never saw the board rest at one time\n"));
+  EXPECT_THAT(text, HasSubstr("rig     Good.\nnext    Show the board to front_left.\n"));
+  rig.problem = "no pair joins these parts of the rig: front | left";
+  page.Take(rig);
+  EXPECT_THAT(page.Text(At(1)), HasSubstr("rig     no tree yet: no pair joins these parts"));
+}
+
 TEST(StatusPage, FitsATerminalOf24Rows) {
   StatusPage page(PlanOfPair({}), AllModuleNames(), At(0));
   for (const std::string& module : AllModuleNames()) {

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
     const voqcal::Rig rig = voqcal::LoadRig(args.rig_path);
     voqcal::Bus bus(args.lcm_url.value_or(rig.lcm_url));
     voqcal::AssessorNode node(rig, &bus, voqcal::SessionFolder(args.session_dir, rig));
-    voqcal::Spin(bus, node, rig.channels.module_status, args.session_dir.value_or(""));
+    voqcal::Spin(bus, node, rig.channels.module_status, args);
     spdlog::info(node.Summary());
   });
 }

@@ -8,6 +8,7 @@
 #include "camera_driver/genicam_source.hpp"
 #include "camera_driver/guided_camera_source.hpp"
 #include "camera_driver/video_source.hpp"
+#include "core/simulation/rig_simulation.hpp"
 #include "core/simulation/simulation.hpp"
 #include "files/atomic_file.hpp"
 #include "images/encoded_image.hpp"
@@ -45,31 +46,56 @@ class FolderCameraSource : public CameraSource {
   bool has_ended_ = false;
 };
 
+/// @tparam World  Simulation, or one like it.
+template <typename World>
 class SimulatedCameraSource : public CameraSource {
  public:
-  explicit SimulatedCameraSource(const Rig& rig)
-      : simulation_(rig.simulation, rig.board, rig.camera),
-        rate_hz_(rig.camera_driver.rate_hz),
-        jpeg_quality_(rig.camera_driver.jpeg_quality) {}
+  SimulatedCameraSource(std::unique_ptr<World> world, const CameraDriverOptions& options)
+      : world_(std::move(world)), rate_hz_(options.rate_hz), jpeg_quality_(options.jpeg_quality) {}
 
   std::optional<TimedImage> Next() override {
     const double time_s = static_cast<double>(num_images_) / rate_hz_;
-    has_ended_ = time_s > simulation_.DurationS();
+    has_ended_ = time_s > world_->DurationS();
     if (has_ended_) return {};
     ++num_images_;
     const std::int64_t utime = kSyntheticEpochUtime + std::llround(time_s * 1e6);
-    return TimedImage{utime, EncodeJpeg(simulation_.Image(time_s), jpeg_quality_)};
+    return TimedImage{utime, EncodeJpeg(world_->Image(time_s), jpeg_quality_)};
   }
 
   bool HasEnded() const override { return has_ended_; }
 
  private:
-  Simulation simulation_;
+  std::unique_ptr<World> world_;
   double rate_hz_;
   int jpeg_quality_;
   std::int64_t num_images_ = 0;
   bool has_ended_ = false;
 };
+
+/// What one camera of a rig sees of the world of all.
+class WorldOfRig {
+ public:
+  explicit WorldOfRig(const Rig& rig)
+      : simulation_(rig.simulated_rig, rig.board),
+        camera_(IndexOfName(rig.simulated_rig.cameras, rig.camera_name)) {}
+
+  double DurationS() const { return simulation_.DurationS(); }
+  cv::Mat Image(double time_s) { return simulation_.Image(camera_, time_s); }
+
+ private:
+  RigSimulation simulation_;
+  std::size_t camera_;
+};
+
+std::unique_ptr<CameraSource> MakeSimulatedSource(const Rig& rig, Bus* bus) {
+  if (!rig.simulated_rig.cameras.empty()) {
+    return std::make_unique<SimulatedCameraSource<WorldOfRig>>(std::make_unique<WorldOfRig>(rig),
+                                                               rig.camera_driver);
+  }
+  if (rig.simulation.follows_guidance) return std::make_unique<GuidedCameraSource>(rig, bus);
+  return std::make_unique<SimulatedCameraSource<Simulation>>(
+      std::make_unique<Simulation>(rig.simulation, rig.board, rig.camera), rig.camera_driver);
+}
 
 }  // namespace
 
@@ -80,8 +106,7 @@ std::unique_ptr<CameraSource> MakeCameraSource(const Rig& rig, Bus* bus) {
       AnnouncePairing(rig);
       return std::make_unique<FolderCameraSource>(rig.camera_driver);
     case CameraDriverOptions::Source::kSimulator:
-      if (rig.simulation.follows_guidance) return std::make_unique<GuidedCameraSource>(rig, bus);
-      return std::make_unique<SimulatedCameraSource>(rig);
+      return MakeSimulatedSource(rig, bus);
     case CameraDriverOptions::Source::kVideo:
       return MakeVideoSource(rig.camera_driver);
     case CameraDriverOptions::Source::kGenicam:

@@ -58,7 +58,7 @@ DashboardNode::DashboardNode(const Rig& rig,
       server_(*server),
       session_folder_(session_folder),
       result_file_(session_folder / "extrinsic.yaml"),
-      health_(rig.channels, {}, Clock::now()),
+      health_(PlanOfPair(rig.channels), {}, Clock::now()),
       report_maker_(report_command, session_folder / "report.txt"),
       report_file_{"text/html; charset=utf-8", "", false, true} {
   Subscribe();

@@ -112,7 +112,7 @@ void Run(const ProcessArgs& args) {
     spdlog::warn("the page can be reached over the network, without encryption: {}",
                  options.address);
   }
-  Spin(bus, node, rig.channels.module_status, args.session_dir.value_or(""));
+  Spin(bus, node, rig.channels.module_status, args);
   spdlog::info(node.Summary());
 }
 

@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
                                                 : rig.extrinsic_monitor.extrinsic;
     voqcal::ExtrinsicMonitorNode node(rig, &bus, extrinsic);
     spdlog::info("watches {}", extrinsic.string());
-    voqcal::Spin(bus, node, rig.channels.module_status, args.session_dir.value_or(""));
+    voqcal::Spin(bus, node, rig.channels.module_status, args);
     spdlog::info(node.Summary());
   });
 }

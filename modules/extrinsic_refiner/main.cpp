@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
             rig.camera,
             rig.scene_check.view,
             voqcal::SessionFolder(args.session_dir, rig) / voqcal::kSamplesLogName));
-    voqcal::Spin(bus, node, rig.channels.module_status, args.session_dir.value_or(""));
+    voqcal::Spin(bus, node, rig.channels.module_status, args);
     spdlog::info(node.Summary());
   });
 }

@@ -1,8 +1,7 @@
 #include "health/heartbeats.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <sstream>
+#include <set>
 #include <utility>
 
 namespace voqcal {
@@ -19,35 +18,74 @@ std::int64_t NumReceived(const HeardModule* heard, const std::string& channel) {
   return 0;
 }
 
+/// It is that session, or a pair's within it.
+bool IsOf(const std::string& session, const std::string& own) {
+  return session == own || (!own.empty() && session.rfind(own + "/", 0) == 0);
+}
+
 /// Those lately heard, but for `own`: "a and of b"; and how many.
 std::pair<std::string, int> SessionsText(const std::map<std::string, HeardModule::Time>& sessions,
                                          const std::string& own,
                                          HeardModule::Time now) {
   std::pair<std::string, int> text{"", 0};
   for (const auto& [session, at] : sessions) {
-    if (session == own || SecondsBetween(at, now) > kSilenceS) continue;
+    if (IsOf(session, own) || SecondsBetween(at, now) > kSilenceS) continue;
     text.first += (text.second++ == 0 ? "" : " and of ") + session;
   }
   return text;
 }
 
-// Who only watches (extrinsic_monitor) disturbs none.
-bool IsOfASession(const std::string& module) {
-  static const std::vector<std::string> kAll = AllModuleNames();
-  return std::find(kAll.begin(), kAll.end(), module) != kAll.end();
+Stream StreamOf(const std::string& channel, const std::string& sender, const std::string& name) {
+  Stream stream;
+  stream.channel = channel;
+  stream.sender = sender;
+  stream.name = name;
+  return stream;
+}
+
+Stream DetectorStream(const std::string& channel,
+                      const std::string& module,
+                      const std::string& input) {
+  Stream stream = StreamOf(channel, module, module);
+  stream.input = input;
+  return stream;
 }
 
 }  // namespace
 
-std::vector<std::string> AllModuleNames() {
-  std::istringstream names(VOQCAL_MODULES);  // modules/names.txt
-  return {std::istream_iterator<std::string>(names), {}};
+SessionPlan PlanOfPair(const Channels& channels) {
+  return {AllModuleNames(),
+          {StreamOf(channels.lidar_points, "lidar_driver", "lidar"),
+           StreamOf(channels.camera_image, "camera_driver", "camera"),
+           DetectorStream(channels.lidar_board, "lidar_board_detector", channels.lidar_points),
+           DetectorStream(channels.camera_board, "camera_board_detector", channels.camera_image)}};
 }
 
-bool IsDriver(const std::string& module) {
-  static const std::string kEnding = "_driver";
-  return module.size() > kEnding.size() &&
-         module.compare(module.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
+SessionPlan PlanOfRig(const std::filesystem::path& rig, const std::vector<Rig>& pairs) {
+  if (pairs.size() == 1) return PlanOfPair(pairs.front().channels);
+  SessionPlan plan;
+  for (const SessionProgram& program : ProgramsOfRig(rig)) plan.modules.push_back(program.name);
+  std::vector<Stream> detectors;
+  std::set<std::string> told;
+  for (const Rig& pair : pairs) {
+    const std::string& lidar = pair.lidar_name;
+    const std::string& camera = pair.camera_name;
+    const Channels& channels = pair.channels;
+    if (told.insert(lidar).second) {
+      plan.streams.push_back(
+          StreamOf(channels.lidar_points, "lidar_driver_" + lidar, "lidar " + lidar));
+      detectors.push_back(DetectorStream(
+          channels.lidar_board, "lidar_board_detector_" + lidar, channels.lidar_points));
+    }
+    if (told.insert(camera).second) {
+      plan.streams.push_back(
+          StreamOf(channels.camera_image, "camera_driver_" + camera, "camera " + camera));
+      detectors.push_back(DetectorStream(
+          channels.camera_board, "camera_board_detector_" + camera, channels.camera_image));
+    }
+  }
+  plan.streams.insert(plan.streams.end(), detectors.begin(), detectors.end());
+  return plan;
 }
 
 double SecondsBetween(HeardModule::Time from, HeardModule::Time to) {
@@ -57,12 +95,6 @@ double SecondsBetween(HeardModule::Time from, HeardModule::Time to) {
 bool HeardModule::HasEnded() const { return status.state == "done" || status.state == "stopped"; }
 
 bool HeardModule::IsSilent(Time now) const { return SecondsBetween(at, now) > kSilenceS; }
-
-Heartbeats::Heartbeats(const Channels& channels)
-    : streams_{{channels.lidar_points, "lidar_driver", "lidar"},
-               {channels.camera_image, "camera_driver", "camera"},
-               {channels.lidar_board, "lidar_board_detector", "lidar_board_detector"},
-               {channels.camera_board, "camera_board_detector", "camera_board_detector"}} {}
 
 const HeardModule* Heartbeats::Find(const std::string& module) const {
   const auto found = heard_.find(module);
@@ -131,7 +163,7 @@ std::vector<std::string> Heartbeats::Rivals(Time now, const std::string& own) co
   const int least = own.empty() ? 2 : 1;
   std::vector<std::string> rivals;
   for (const auto& [module, heard] : heard_) {
-    if (!IsOfASession(module)) continue;
+    if (ModuleOf(module).empty()) continue;  // who only watches (extrinsic_monitor) disturbs none
     const auto [names, num] = SessionsText(heard.sessions, own, now);
     if (num >= least) rivals.push_back(module + " of " + names + " runs on this network");
   }

@@ -2,21 +2,18 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "health/session_programs.hpp"
 #include "rig/rig.hpp"
 #include "voqcal/module_status_t.hpp"
 
 namespace voqcal {
-
-/// Every module of the flow, in its order.
-std::vector<std::string> AllModuleNames();
-
-/// It may end by itself: what it reads has an end. No other module may.
-bool IsDriver(const std::string& module);
 
 /// The state in a heartbeat that tools/up sends for a module that it is about to start: the network
 /// is taken before anything on it could read another session's messages.
@@ -41,14 +38,24 @@ struct HeardModule {
 /// A channel that samples are made of, as its readers count it.
 struct Stream {
   std::string channel;
-  std::string sender;            ///< The module that sends it.
-  std::string name;              ///< "lidar", "camera"; of a detector its module's name.
-  bool has_reader = false;       ///< Of those heard; else nobody here can say whether it comes.
-  bool has_come = false;         ///< While its readers were heard...
+  std::string sender;       ///< The module that sends it.
+  std::string name;         ///< "lidar", "camera"; of a detector its module's name.
+  std::string input;        ///< The channel that the sender reads; empty: it is a sensor's driver.
+  bool has_reader = false;  ///< Of those heard; else nobody here can say whether it comes.
+  bool has_come = false;    ///< While its readers were heard...
   bool has_come_before = false;  ///< ...or before: they had counted it.
   HeardModule::Time last_news{};
   double usual_gap_s = 0;
 };
+
+/// What a session is made of.
+struct SessionPlan {
+  std::vector<std::string> modules;  ///< By their names in it, in the order of the flow.
+  std::vector<Stream> streams;       ///< Of its sensors, then of their detectors.
+};
+SessionPlan PlanOfPair(const Channels& channels);
+/// @param pairs  LoadPairs of it.
+SessionPlan PlanOfRig(const std::filesystem::path& rig, const std::vector<Rig>& pairs);
 
 double SecondsBetween(HeardModule::Time from, HeardModule::Time to);
 
@@ -57,7 +64,7 @@ class Heartbeats {
  public:
   using Time = HeardModule::Time;
 
-  explicit Heartbeats(const Channels& channels);
+  explicit Heartbeats(std::vector<Stream> streams = {}) : streams_(std::move(streams)) {}
 
   void Take(const module_status_t& status, Time now);
 
@@ -65,7 +72,7 @@ class Heartbeats {
   const HeardModule* Find(const std::string& module) const;
   /// By name.
   const std::map<std::string, HeardModule>& heard() const { return heard_; }
-  /// Of the two sensors, then of their detectors.
+  /// Of the sensors, then of their detectors.
   const std::vector<Stream>& streams() const { return streams_; }
 
   /// A sentence for each module that sessions other than `own` run, or are about to start, on this

@@ -66,8 +66,11 @@ const char* ToString(Flow flow) {
   return "";
 }
 
-RigHealth::RigHealth(const Channels& channels, std::vector<std::string> modules, Time begin)
-    : heartbeats_(channels), modules_(std::move(modules)), begin_(begin) {}
+RigHealth::RigHealth(const SessionPlan& plan, std::vector<std::string> modules, Time begin)
+    : heartbeats_(plan.streams),
+      all_modules_(plan.modules),
+      modules_(std::move(modules)),
+      begin_(begin) {}
 
 void RigHealth::Take(const SessionFacts& facts, Time now) {
   const bool has_grown = facts.num_recorded_bytes != facts_.num_recorded_bytes;
@@ -190,13 +193,11 @@ void RigHealth::AddRivals(Time now, std::vector<Fault>* faults) const {
 
 // A detector that has nothing to read is silent for that.
 void RigHealth::AddStreamFaults(Time now, std::vector<Fault>* faults) const {
-  const std::vector<Stream>& streams = heartbeats_.streams();
-  for (std::size_t i = 0; i < streams.size(); ++i) {
-    const Stream& stream = streams[i];
+  for (const Stream& stream : heartbeats_.streams()) {
     const Flow flow = FlowOf(stream, now);
     if (flow == Flow::kFlows || flow == Flow::kEnded) continue;
-    const bool is_sensor = i < 2;
-    if (!is_sensor && FlowOf(streams[i - 2], now) != Flow::kFlows) continue;
+    const bool is_sensor = stream.input.empty();
+    if (!is_sensor && FlowOf(stream.input, now) != Flow::kFlows) continue;
     const bool is_expected = IsExpected(stream.sender) || are_streams_expected_;
     const bool may_come = IsStarting(stream.sender, now) || !is_expected;
     if (flow == Flow::kNothingYet && (may_come || !stream.has_reader)) continue;
@@ -277,7 +278,7 @@ void RigHealth::AddTroubles(Time now, std::vector<Fault>* faults) const {
 }
 
 void RigHealth::AddModuleFaults(Time now, std::vector<Fault>* faults) const {
-  for (const std::string& module : AllModuleNames()) {
+  for (const std::string& module : all_modules_) {
     const bool is_told = std::any_of(faults->begin(), faults->end(), [&](const Fault& fault) {
       const Stream* stream = StreamOfSender(module);
       return fault.of == module || (stream != nullptr && fault.of == stream->name);

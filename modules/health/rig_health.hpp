@@ -31,10 +31,10 @@ class RigHealth {
  public:
   using Time = HeardModule::Time;
 
-  /// @param channels  those of the rig.
-  /// @param modules   those that should be heard, besides what the session's supervisor runs.
-  /// @param begin     from when on every heartbeat is taken.
-  RigHealth(const Channels& channels, std::vector<std::string> modules, Time begin);
+  /// @param plan     of the session.
+  /// @param modules  those that should be heard, besides what the session's supervisor runs.
+  /// @param begin    from when on every heartbeat is taken.
+  RigHealth(const SessionPlan& plan, std::vector<std::string> modules, Time begin);
 
   void Take(const module_status_t& status, Time now) { heartbeats_.Take(status, now); }
   void Take(const SessionFacts& facts, Time now);
@@ -49,7 +49,7 @@ class RigHealth {
   ModuleHealth HealthOf(const std::string& module, Time now) const;
   /// Of a module that has ended: "done", or "stopped" by somebody.
   std::string HowEnded(const std::string& module) const;
-  /// Of one of the four channels that samples are made of.
+  /// Of one of the channels that samples are made of.
   Flow FlowOf(const std::string& channel, Time now) const;
 
   const Heartbeats& heartbeats() const { return heartbeats_; }
@@ -81,6 +81,7 @@ class RigHealth {
   std::string CauseAt(const std::string& module, Time now) const;
 
   Heartbeats heartbeats_;
+  std::vector<std::string> all_modules_;  ///< Of the session.
   std::vector<std::string> modules_;
   bool are_streams_expected_ = false;  ///< Also those of senders that are not.
   Time begin_;

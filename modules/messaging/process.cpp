@@ -23,6 +23,10 @@ void AddFlags(CLI::App* app, ProcessArgs* args) {
       ->type_name("URL");
   app->add_option("--session", args->session_dir, "Session folder, for modules that keep files")
       ->type_name("DIR");
+  app->add_option("--name",
+                  args->name,
+                  "What it is called in MODULE_STATUS and its log, where several of it run")
+      ->type_name("NAME");
   app->add_flag("--verbose", args->is_verbose, "Log more");
   app->set_version_flag("--version", VOQCAL_VERSION);
 }
@@ -45,7 +49,7 @@ int RunProcess(int argc,
     return kExitUsage;
   }
   try {
-    LogToStderr(info.name, args.is_verbose);
+    LogToStderr(args.name.value_or(info.name), args.is_verbose);
     body(args);
     return EXIT_SUCCESS;
   } catch (const std::exception& error) {

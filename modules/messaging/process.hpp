@@ -19,6 +19,9 @@ struct ProcessArgs {
   std::optional<std::string> lcm_url;  ///< --lcm-url URL, instead of the rig file's.
   /// --session DIR, for modules that keep files.
   std::optional<std::filesystem::path> session_dir;
+  /// --name NAME: what MODULE_STATUS and the log call it, where a rig of several sensors has more
+  /// than one of it: "lidar_driver_front".
+  std::optional<std::string> name;
   bool is_verbose = false;  ///< --verbose: log level debug.
 };
 

@@ -25,11 +25,9 @@ void RequestStop(int /*signal*/) { g_is_stop_requested = 1; }
 /// Republish and status whenever a second has passed.
 class Heartbeat {
  public:
-  Heartbeat(Bus& bus,
-            Module& module,
-            const std::string& channel,
-            const std::filesystem::path& session_dir)
-      : module_(module), status_(bus, channel, session_dir) {}
+  Heartbeat(Bus& bus, Module& module, const std::string& channel, const ProcessArgs& args)
+      : module_(module),
+        status_(bus, channel, args.session_dir.value_or(""), args.name.value_or(module.Name())) {}
 
   void BeatIfDue() {
     const Clock::time_point now = Clock::now();
@@ -93,12 +91,9 @@ StopOnSignal::~StopOnSignal() {
 
 bool StopOnSignal::IsRequested() const { return g_is_stop_requested != 0; }
 
-void Spin(Bus& bus,
-          Module& module,
-          const std::string& status_channel,
-          const std::filesystem::path& session_dir) {
+void Spin(Bus& bus, Module& module, const std::string& status_channel, const ProcessArgs& args) {
   const StopOnSignal stop;
-  Heartbeat heartbeat(bus, module, status_channel, session_dir);
+  Heartbeat heartbeat(bus, module, status_channel, args);
   try {
     RunUntilStopped(bus, module, stop, &heartbeat);
   } catch (const std::exception& error) {

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <csignal>
-#include <filesystem>
 #include <string>
 
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
+#include "messaging/process.hpp"
 
 namespace voqcal {
 
@@ -31,11 +31,11 @@ class StopOnSignal {
 ///
 /// Ends within a second of the signal if Step and the handlers take no longer than that.
 ///
-/// @param session_dir  of the session that the module serves, for MODULE_STATUS; empty: of none.
+/// @param args  the session that the module serves, and what it is called there, for MODULE_STATUS.
 /// @throws what Step, Republish or a handler throws, after a status "failed: ..." with its text.
 void Spin(Bus& bus,
           Module& module,
           const std::string& status_channel,
-          const std::filesystem::path& session_dir = {});
+          const ProcessArgs& args = {});
 
 }  // namespace voqcal

@@ -19,8 +19,12 @@ std::string SessionName(const std::filesystem::path& session_dir) {
 
 StatusPublisher::StatusPublisher(Bus& bus,
                                  std::string channel,
-                                 const std::filesystem::path& session_dir)
-    : bus_(bus), channel_(std::move(channel)), session_(SessionName(session_dir)) {}
+                                 const std::filesystem::path& session_dir,
+                                 std::string name)
+    : bus_(bus),
+      channel_(std::move(channel)),
+      session_(SessionName(session_dir)),
+      name_(std::move(name)) {}
 
 void StatusPublisher::Publish(const Module& module,
                               const std::string& state,
@@ -28,7 +32,7 @@ void StatusPublisher::Publish(const Module& module,
   module_status_t message{};
   message.utime = WallClockUs();
   message.seq = ++num_sent_;
-  message.module = module.Name();
+  message.module = name_.empty() ? module.Name() : name_;
   message.session = session_;
   message.state = state;
   for (const auto& [name, counts] : bus_.channels()) {

@@ -24,7 +24,11 @@ class StatusPublisher {
 
   /// Borrows `bus`, which must outlive it.
   /// @param session_dir  of the session that the module serves; empty: of none.
-  StatusPublisher(Bus& bus, std::string channel, const std::filesystem::path& session_dir = {});
+  /// @param name         of the module there; empty: Module::Name.
+  StatusPublisher(Bus& bus,
+                  std::string channel,
+                  const std::filesystem::path& session_dir = {},
+                  std::string name = {});
 
   /// @param state  usually module.State(); "failed: ..." when it can do no more.
   /// @param now    rates are counted from the previous call's `now` to this one; 0 in the first.
@@ -38,6 +42,7 @@ class StatusPublisher {
   Bus& bus_;
   std::string channel_;
   std::string session_;
+  std::string name_;
   std::int64_t num_sent_ = 0;
   Clock::time_point last_;
   std::map<std::string, std::int64_t> num_received_;  ///< At the previous call.

@@ -37,6 +37,7 @@ constexpr ChannelKey kKeys[] = {
     {"module_status", &Channels::module_status, Owner::kRig},
     {"camera_to_lidar", &Channels::camera_to_lidar, Owner::kPair},
     {"extrinsic_check", &Channels::extrinsic_check, Owner::kPair},
+    {"rig_extrinsics", &Channels::rig_extrinsics, Owner::kRig},
 };
 
 /// Channels that LCM can carry, and no two the same.

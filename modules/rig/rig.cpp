@@ -64,14 +64,14 @@ CalibrationTask Rig::Task() const {
 
 namespace {
 
-Rig Load(const std::filesystem::path& path, LensInRig* lens) {
+Rig Load(const std::filesystem::path& path, SensorChoice choice, LensInRig* lens) {
   const RigPlace place = PlaceOfRig(path);
   const std::string text = ReadWholeFile(place.file);
   YamlDocument document(place.file.string(), text);
   Rig rig;
   rig.path = path;
   rig.sha256 = Sha256OfBytes(text);
-  ReadRigSections(place, &document, &rig, lens);
+  ReadRigSections(place, &document, &rig, lens, choice);
   document.ThrowIfWrong();
   rig.remarks = document.Remarks();
   return rig;
@@ -80,10 +80,6 @@ Rig Load(const std::filesystem::path& path, LensInRig* lens) {
 Rig Told(Rig rig) {
   for (const std::string& remark : rig.remarks) spdlog::warn(remark);
   return rig;
-}
-
-void AddIfNew(const std::string& line, std::vector<std::string>* lines) {
-  if (std::find(lines->begin(), lines->end(), line) == lines->end()) lines->push_back(line);
 }
 
 bool Has(const std::vector<std::string>& names, const std::string& name) {
@@ -107,6 +103,10 @@ std::vector<std::string> LinesOf(const std::string& text) {
   return lines;
 }
 
+void AddIfNew(const std::string& line, std::vector<std::string>* lines) {
+  if (std::find(lines->begin(), lines->end(), line) == lines->end()) lines->push_back(line);
+}
+
 }  // namespace
 
 RigPlace PlaceOfRig(const std::filesystem::path& path) {
@@ -121,19 +121,30 @@ RigPlace PlaceOfRig(const std::filesystem::path& path) {
   return place;
 }
 
-Rig LoadRig(const std::filesystem::path& path) { return Told(Load(path, nullptr)); }
+Rig LoadRig(const std::filesystem::path& path) { return LoadRig(path, SensorChoice::kPair); }
 
-Rig LoadRig(const std::filesystem::path& path, LensInRig* lens) { return Told(Load(path, lens)); }
+Rig LoadRig(const std::filesystem::path& path, SensorChoice choice) {
+  return Told(Load(path, choice, nullptr));
+}
+
+Rig LoadRig(const std::filesystem::path& path, LensInRig* lens) {
+  return Told(Load(path, SensorChoice::kCamera, lens));
+}
+
+RigSensors SensorsOfRig(const std::filesystem::path& path) {
+  RigPlace place = PlaceOfRig(path);
+  YamlDocument document(place.file.string(), ReadWholeFile(place.file));
+  const RigSensors sensors = ReadRigSensors(&place, &document);
+  return {Meant(sensors.lidars, place.names), Meant(sensors.cameras, place.names)};
+}
 
 std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path) {
-  const RigPlace place = PlaceOfRig(path);
-  YamlDocument document(place.file.string(), ReadWholeFile(place.file));
-  const RigSensors sensors = ReadRigSensors(place, &document);
+  const RigSensors sensors = SensorsOfRig(path);
   if (sensors.lidars.empty()) return {path};
   std::vector<std::filesystem::path> paths;
-  for (const std::string& lidar : Meant(sensors.lidars, place.names)) {
-    for (const std::string& camera : Meant(sensors.cameras, place.names)) {
-      paths.emplace_back(place.file.string() + "#" + lidar + "," + camera);
+  for (const std::string& lidar : sensors.lidars) {
+    for (const std::string& camera : sensors.cameras) {
+      paths.emplace_back(PlaceOfRig(path).file.string() + "#" + lidar + "," + camera);
     }
   }
   return paths;
@@ -145,7 +156,7 @@ std::vector<Rig> LoadPairs(const std::filesystem::path& path) {
   std::vector<std::string> problems;
   for (const std::filesystem::path& each : PairsOfRig(path)) {
     try {
-      rigs.push_back(Load(each, nullptr));
+      rigs.push_back(Load(each, SensorChoice::kPair, nullptr));
       for (const std::string& remark : rigs.back().remarks) AddIfNew(remark, &remarks);
     } catch (const std::runtime_error& error) {
       for (const std::string& line : LinesOf(error.what())) AddIfNew(line, &problems);

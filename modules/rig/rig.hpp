@@ -24,6 +24,7 @@
 #include "core/scene/scene_window_options.hpp"
 #include "core/selection/consistency.hpp"
 #include "core/selection/select_sets.hpp"
+#include "core/simulation/rig_simulation.hpp"
 #include "core/simulation/simulation.hpp"
 #include "rig/dashboard_options.hpp"
 #include "rig/lcm_url.hpp"
@@ -50,6 +51,7 @@ struct Channels {
   std::string module_status = "MODULE_STATUS";
   std::string camera_to_lidar = "CAMERA_TO_LIDAR";
   std::string extrinsic_check = "EXTRINSIC_CHECK";
+  std::string rig_extrinsics = "RIG_EXTRINSICS";
 };
 
 /// Frames without a clock of their own (folders, simulation) count from here: 2020-01-01T00:00:00Z,
@@ -146,6 +148,9 @@ struct Rig {
   LidarSensorOptions lidar_sensor;  ///< Under lidar_driver; for source kSensor.
   CameraDriverOptions camera_driver;
   SimulationOptions simulation;  ///< Used by drivers whose source is the simulator.
+  /// Of a file of several sensors that are the simulator's: the world of them all, whichever are
+  /// meant. Without sensors: `simulation` is the world.
+  RigSimulationOptions simulated_rig;
   LidarBoardOptions lidar_board_detector;
   CameraBoardOptions camera_board_detector;
   SamplePickerOptions sample_collector;
@@ -185,11 +190,22 @@ struct RigSensors {
 ///     wrong types, Problems() of any part; which pairs there are, if `path` names none.
 Rig LoadRig(const std::filesystem::path& path);
 
-/// A path for each pair of a rig file: each camera of the first lidar, of the second, ...; of those
-/// sensors alone that `path` names, if it names any of a kind. `path` itself if the file does not
-/// have them by name.
+/// Those that are meant: of a kind of which `path` (or, where it names none, the file) names some,
+/// these, else all. None if the file does not have them by name.
+/// @throws as LoadRig if the sensors' names are wrong.
+RigSensors SensorsOfRig(const std::filesystem::path& path);
+
+/// A path for each pair of SensorsOfRig: each camera of the first lidar, of the second, ...; `path`
+/// itself if the file does not have them by name.
 /// @throws as LoadRig if the sensors' names are wrong.
 std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path);
+
+/// Which sensors a program works on.
+enum class SensorChoice { kPair, kLidar, kCamera };
+
+/// For a program of one sensor: of a file with several, `path` names that one alone
+/// ("rig.yaml#front"). What is said of the other kind is then that of any.
+Rig LoadRig(const std::filesystem::path& path, SensorChoice choice);
 
 /// LoadRig of each of PairsOfRig.
 /// @throws as LoadRig, each problem once.

@@ -16,6 +16,7 @@
 #include "rig/refiner_section.hpp"
 #include "rig/section_reading.hpp"
 #include "rig/sensor_entries.hpp"
+#include "rig/simulation_section.hpp"
 
 namespace voqcal {
 namespace {
@@ -59,46 +60,6 @@ void ReadBoard(YamlSection* top, BoardSpec* board) {
   for (const TargetKey& key : target->keys) ReadTargetKey(key, &section, board);
   if (section.IsComplete()) section.AddProblems(BoardProblems(*board));
   section.RefuseUnknownKeys();
-}
-
-void ReadScan(YamlSection* section, ScanOptions* scan) {
-  std::string pattern = ToString(scan->pattern);
-  section->Read("pattern", &pattern);
-  if (const auto known = ScanPatternFromString(pattern)) {
-    scan->pattern = *known;
-  } else {
-    section->AddError("pattern", "must be vlp16, spinning_64, spinning_128, raster or rosette");
-  }
-  section->ReadDegrees("dense_from_deg", &scan->dense_from_rad);
-  section->ReadDegrees("dense_to_deg", &scan->dense_to_rad);
-}
-
-void ReadSimulation(YamlSection* top, SimulationOptions* options) {
-  YamlSection section = top->Section("simulation");
-  section.Read("seed", &options->seed);
-  YamlSection truth = section.Section("T_camera_lidar");
-  ReadTransform(&truth, &options->T_camera_lidar);
-  truth.RefuseUnknownKeys();
-  section.Read("follows_guidance", &options->follows_guidance);
-  section.Read("num_poses", &options->num_poses);
-  section.Read("hold_s", &options->hold_s);
-  section.Read("move_s", &options->move_s);
-  section.Read("min_distance_m", &options->min_distance_m);
-  section.Read("max_distance_m", &options->max_distance_m);
-  section.Read("has_clutter", &options->has_clutter);
-  section.Read("second_board_scale", &options->second_board_scale);
-  ReadScan(&section, &options->scan);
-  section.Read("range_noise_m", &options->range_noise_m);
-  section.Read("ring_bias_m", &options->ring_bias_m);
-  section.Read("common_bias_m", &options->common_bias_m);
-  section.Read("dark_bias_m", &options->dark_bias_m);
-  section.Read("intensity_noise", &options->intensity_noise);
-  section.ReadDegrees("beam_divergence_deg", &options->beam_divergence_rad);
-  section.ReadDegrees("pointing_noise_deg", &options->pointing_noise_rad);
-  section.Read("dropout", &options->dropout);
-  section.Read("image_noise", &options->image_noise);
-  section.Read("image_blur_px", &options->image_blur_px);
-  CheckAndClose(*options, &section);
 }
 
 void ReadLidarBoardDetector(YamlSection* top, LidarBoardOptions* options) {
@@ -254,21 +215,6 @@ void ReadDetector(void (*read)(YamlSection*, Options*),
   if (sensor->Has(key)) *options = own;
 }
 
-/// A simulated world has one of each: two drivers that simulate two pairs would not show one board.
-void RefuseSimulator(const SensorEntries& entries, const Rig& rig, const PairOfEntries& pair) {
-  if (entries.lidars.size() + entries.cameras.size() <= 2) return;
-  const auto refuse = [](SensorEntry* entry, const char* driver) {
-    YamlSection section = entry->section.Section(driver);
-    section.AddError("source", "must not be the simulator, which has one lidar and one camera");
-  };
-  if (rig.lidar_driver.source == LidarDriverOptions::Source::kSimulator) {
-    refuse(pair.lidar, "lidar_driver");
-  }
-  if (rig.camera_driver.source == CameraDriverOptions::Source::kSimulator) {
-    refuse(pair.camera, "camera_driver");
-  }
-}
-
 /// What belongs to one lidar or one camera, from where each has its sections.
 void ReadSensors(const std::filesystem::path& rig_path,
                  YamlSection* top,
@@ -285,9 +231,10 @@ void ReadSensors(const std::filesystem::path& rig_path,
       ReadCameraBoardDetector, "camera_board_detector", camera, top, &rig->camera_board_detector);
 }
 
-/// Where the path names none, the file may: a session's copy is of one pair.
+/// Where the path names none, the file may: a session's copy says which were meant.
 RigPlace PlaceInFile(const RigPlace& place, YamlSection* top) {
   std::string names;
+  top->Read("sensors", &names);
   top->Read("pair", &names);
   return place.names.empty() && !names.empty()
              ? PlaceOfRig(std::filesystem::path(place.file.string() + "#" + names))
@@ -296,12 +243,13 @@ RigPlace PlaceInFile(const RigPlace& place, YamlSection* top) {
 
 /// The same of a file that has its sensors by name.
 void ReadNamedSensors(const RigPlace& place,
+                      SensorChoice choice,
                       const std::string& channel_prefix,
                       YamlSection* top,
                       SensorEntries* entries,
                       Rig* rig,
                       LensInRig* lens) {
-  const PairOfEntries pair = ChoosePair(PlaceInFile(place, top), lens != nullptr, entries);
+  const PairOfEntries pair = ChoosePair(PlaceInFile(place, top), choice, entries);
   rig->lidar_name = pair.lidar->name;
   rig->camera_name = pair.camera->name;
   const bool is_one_of_several = entries->lidars.size() + entries->cameras.size() > 2;
@@ -309,22 +257,29 @@ void ReadNamedSensors(const RigPlace& place,
   ReadChannels(top, channel_prefix, pair, entries, &rig->channels);
   ReadSensors(place.file, top, &pair.lidar->section, &pair.camera->section, rig, lens);
   ReadMounts(pair, rig);
-  RefuseSimulator(*entries, *rig, pair);
+  if (lens == nullptr) {
+    ReadSimulatedRig(top, pair, entries, rig);
+  } else {
+    pair.camera->section.Section("simulation");
+    pair.lidar->section.Section("simulation");
+  }
   pair.lidar->section.RefuseUnknownKeys();
   pair.camera->section.RefuseUnknownKeys();
 }
 
 }  // namespace
 
-RigSensors ReadRigSensors(const RigPlace& place, YamlDocument* document) {
+RigSensors ReadRigSensors(RigPlace* place, YamlDocument* document) {
   YamlSection top(document);
   const SensorEntries entries = ReadSensorEntries(&top);
   document->ThrowIfWrong();
-  RequireNames(place, entries.Names());
+  *place = PlaceInFile(*place, &top);
+  RequireNames(*place, entries.Names());
   return entries.Names();
 }
 
-void ReadRigSections(const RigPlace& place, YamlDocument* document, Rig* rig, LensInRig* lens) {
+void ReadRigSections(
+    const RigPlace& place, YamlDocument* document, Rig* rig, LensInRig* lens, SensorChoice choice) {
   YamlSection top(document);
   SensorEntries entries = ReadSensorEntries(&top);
   document->ThrowIfWrong();  // before any of them is chosen
@@ -333,14 +288,14 @@ void ReadRigSections(const RigPlace& place, YamlDocument* document, Rig* rig, Le
   rig->name = rig->rig_name;
   ReadLcm(&top, place.file, rig, &channel_prefix);
   ReadBoard(&top, &rig->board);
+  ReadSimulation(&top, &rig->simulation);
   if (entries.AreGiven()) {
-    ReadNamedSensors(place, channel_prefix, &top, &entries, rig, lens);
+    ReadNamedSensors(place, choice, channel_prefix, &top, &entries, rig, lens);
   } else {
     RequireNames(place, {});
     ReadChannels(&top, channel_prefix, &rig->channels);
     ReadSensors(place.file, &top, &top, &top, rig, lens);
   }
-  ReadSimulation(&top, &rig->simulation);
   ReadSampleCollector(&top, &rig->sample_collector);
   ReadVoqSelector(&top, &rig->voq_selector, &rig->consistency);
   ReadExtrinsicEstimator(&top, &rig->extrinsic_estimator, &rig->average);

@@ -11,11 +11,13 @@ namespace voqcal {
 void ReadRigSections(const RigPlace& place,
                      YamlDocument* document,
                      Rig* rig,
-                     LensInRig* lens = nullptr);
+                     LensInRig* lens = nullptr,
+                     SensorChoice choice = SensorChoice::kPair);
 
-/// The sensors that the file names; none if it is of one lidar and one camera.
+/// The sensors that the file names; none if it is of one lidar and one camera. Which of them are
+/// meant, the file may say where `place` does not.
 /// @throws std::runtime_error naming file, line and key if those sections are wrong; if `place`
 ///     names a sensor that is none of them.
-RigSensors ReadRigSensors(const RigPlace& place, YamlDocument* document);
+RigSensors ReadRigSensors(RigPlace* place, YamlDocument* document);
 
 }  // namespace voqcal

@@ -96,6 +96,20 @@ void Take(const RigPlace& place, SensorEntry* entry, const std::string& kind, Se
   *slot = entry;
 }
 
+std::string HowToName(const RigPlace& place, SensorChoice choice, const RigSensors& sensors) {
+  const std::string file = place.file.string() + "#";
+  switch (choice) {
+    case SensorChoice::kLidar:
+      return "name a lidar, as in " + file + sensors.lidars[0];
+    case SensorChoice::kCamera:
+      return "name a camera, as in " + file + sensors.cameras[0];
+    case SensorChoice::kPair:
+      break;
+  }
+  return "name a pair of them, as in " + file + sensors.lidars[0] + "," + sensors.cameras[0] +
+         " (tools/up, calibrate_rig and check_rig take them all)";
+}
+
 }  // namespace
 
 RigSensors SensorEntries::Names() const { return {NamesOf(lidars), NamesOf(cameras)}; }
@@ -140,7 +154,7 @@ void RequireNames(const RigPlace& place, const RigSensors& sensors) {
   }
 }
 
-PairOfEntries ChoosePair(const RigPlace& place, bool may_be_any_lidar, SensorEntries* entries) {
+PairOfEntries ChoosePair(const RigPlace& place, SensorChoice choice, SensorEntries* entries) {
   const RigSensors sensors = entries->Names();
   RequireNames(place, sensors);
   PairOfEntries pair;
@@ -151,15 +165,13 @@ PairOfEntries ChoosePair(const RigPlace& place, bool may_be_any_lidar, SensorEnt
       Take(place, Find(name, &entries->cameras), "cameras", &pair.camera);
     }
   }
-  const bool is_one_lidar = entries->lidars.size() == 1 || may_be_any_lidar;
+  const bool is_one_lidar = entries->lidars.size() == 1 || choice == SensorChoice::kCamera;
+  const bool is_one_camera = entries->cameras.size() == 1 || choice == SensorChoice::kLidar;
   if (pair.lidar == nullptr && is_one_lidar) pair.lidar = &entries->lidars[0];
-  if (pair.camera == nullptr && entries->cameras.size() == 1) pair.camera = &entries->cameras[0];
+  if (pair.camera == nullptr && is_one_camera) pair.camera = &entries->cameras[0];
   if (pair.lidar != nullptr && pair.camera != nullptr) return pair;
-  const std::string example =
-      place.file.string() + "#" + sensors.lidars[0] + "," + sensors.cameras[0];
-  throw std::runtime_error(place.file.string() + ": has " + ListOf(sensors) +
-                           ": name a pair of them, as in " + example +
-                           " (calibrate_rig and check_rig take them all)");
+  throw std::runtime_error(place.file.string() + ": has " + ListOf(sensors) + ": " +
+                           HowToName(place, choice, sensors));
 }
 
 }  // namespace voqcal

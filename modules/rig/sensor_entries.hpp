@@ -36,9 +36,9 @@ struct PairOfEntries {
   SensorEntry* camera = nullptr;
 };
 
-/// Those that `names` names; the only lidar and the only camera need no name.
-/// @param may_be_any_lidar  the first serves, where none is named.
+/// Those that `place` names; the only lidar and the only camera need no name. What `choice` is not
+/// about may be any: the first serves, where none is named.
 /// @throws std::runtime_error with one line, unless one lidar and one camera are left.
-PairOfEntries ChoosePair(const RigPlace& place, bool may_be_any_lidar, SensorEntries* entries);
+PairOfEntries ChoosePair(const RigPlace& place, SensorChoice choice, SensorEntries* entries);
 
 }  // namespace voqcal

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     const auto session_folder = voqcal::SessionFolder(args.session_dir, rig);
     voqcal::SampleCollectorNode node(rig, &bus, session_folder);
     spdlog::info("{}: {} samples so far", session_folder.string(), node.samples().size());
-    voqcal::Spin(bus, node, rig.channels.module_status, args.session_dir.value_or(""));
+    voqcal::Spin(bus, node, rig.channels.module_status, args);
     spdlog::info(node.Summary());
   });
 }

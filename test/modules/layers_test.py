@@ -2,7 +2,7 @@
 """layers_test.py ROOT: holds the includes below ROOT/modules to the house's arrows. Ends with 1 and a line for
 each include that points where none may.
 
-    process -> messaging -> rig, result -> files -> core;  images beside core;  in core, arrows point up the list of
+    process -> messaging -> rig, result -> files -> core;  rig_calibrator -> the modules that it runs;  images beside core;  in core, arrows point up the list of
     modules/core/CMakeLists.txt;  only core's own room of small headers (core/*.hpp) is everyone's
 """
 import re
@@ -20,6 +20,8 @@ ROOMS = {
     "health": {"core", "rig", "voqcal"},
 }
 PROCESS = {"core", "files", "rig", "result", "messaging", "health", "images", "voqcal"}  # never another process
+# ... but the one that does for all pairs of a rig what these do for one.
+ROOMS["rig_calibrator"] = PROCESS | {"voq_selector", "extrinsic_estimator", "extrinsic_refiner", "assessor"}
 
 
 def core_rooms(modules):
@@ -66,6 +68,7 @@ def check_the_check():
         ("core/board/a.hpp", "core/units.hpp"),
         ("assessor/a.cpp", "result/b.hpp"),
         ("assessor/a.cpp", "assessor/b.hpp"),
+        ("rig_calibrator/a.cpp", "assessor/b.hpp"),
     ]
     refused = [
         ("core/geometry/a.hpp", "core/board/b.hpp"),
@@ -78,6 +81,7 @@ def check_the_check():
         ("result/a.cpp", "voqcal/sample_t.hpp"),
         ("messaging/a.cpp", "assessor/b.hpp"),
         ("assessor/a.cpp", "dashboard/b.hpp"),
+        ("rig_calibrator/a.cpp", "sample_collector/b.hpp"),
     ]
     for source, target in allowed:
         assert not why_not(source, target, order), (source, target)

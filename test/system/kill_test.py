@@ -1,12 +1,16 @@
 #!/usr/bin/python3
-"""Kills (SIGKILL) one module of a live session at a random moment, many sessions over. Each must end with
-the result of an undisturbed one: extrinsic.yaml byte for byte, every accepted sample on the disk, no file
-half-written. The sessions run recorded, under tools/run_rig, each in a network namespace of its own.
+"""Kills (SIGKILL) modules of a live session at random moments, many sessions over. Each must end with the
+result of an undisturbed one: extrinsic.yaml (of several sensors every pair's, and rig_extrinsics.yaml) byte
+for byte, every accepted sample on the disk, no file half-written. Of several sensors, also an undisturbed
+session must end with what calibrate_rig makes of its recording, and one whose drivers were killed (what these did
+not send is missing) with that alone. The sessions run recorded, under tools/run_rig, each in a network namespace of
+its own.
 
     test/system/kill_test.py RIG --out DIR --kills 50 --seed 1
 """
 
 import argparse
+import collections
 import os
 import pathlib
 import random
@@ -18,7 +22,13 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-MODULES = [name for name in (ROOT / "modules/names.txt").read_text().split() if name != "dashboard"]
+BIN = pathlib.Path(os.environ.get("VOQCAL_BIN", ROOT / "build/release/bin"))
+
+
+def programs_of(rig):
+    """What a session of the rig runs, by name."""
+    lines = subprocess.run([BIN / "check_rig", rig, "--programs"], check=True, capture_output=True, text=True).stdout
+    return [line.split("\t")[0] for line in lines.splitlines() if not line.startswith("dashboard\t")]
 
 
 def log_events(path):
@@ -36,16 +46,23 @@ def log_events(path):
 
 
 def accepted_ids(recording):
-    """Samples that the collector announced: event_t has a hash, utime, seq, kind, sample_id, ..."""
-    ids = set()
+    """Samples that each collector announced, by its folder: event_t has a hash, utime, seq, kind, sample_id, ..."""
+    ids = {}
     for channel, message in log_events(recording):
-        if not channel.endswith("CALIB_EVENT"):
+        _, found, pair = channel.partition("CALIB_EVENT")
+        if not found:
             continue
         length = struct.unpack_from(">i", message, 24)[0]
         kind = message[28:28 + length - 1].decode()
         if kind == "accepted":
-            ids.add(struct.unpack_from(">q", message, 28 + length)[0])
+            ids.setdefault(pair.lstrip("_"), set()).add(struct.unpack_from(">q", message, 28 + length)[0])
     return ids
+
+
+def results_of(folder):
+    """The bytes of every result file, by name."""
+    names = ["extrinsic.yaml", "rig_extrinsics.yaml", "*/extrinsic.yaml"]
+    return {str(path.relative_to(folder)): path.read_bytes() for name in names for path in folder.glob(name)}
 
 
 def kept_ids(samples_log):
@@ -81,18 +98,30 @@ def kill_module(session, module):
     return True
 
 
+def results_of_recording(rig, session):
+    """What calibrate_rig makes of it, and how many frames of each sensor it holds: the recorder may have lost some."""
+    offline = session.parent / "offline"
+    shutil.rmtree(offline, ignore_errors=True)
+    subprocess.run([BIN / "calibrate_rig", rig, "--log", session / "raw.lcm", "--out", offline], check=True,
+                   capture_output=True)
+    frames = collections.Counter(channel for channel, _ in log_events(session / "raw.lcm")
+                                 if channel.startswith(("LIDAR_POINTS", "CAMERA_IMAGE")))
+    return results_of(offline), frames
+
+
 def problems_of(session, status, expected):
     """What is wrong with a session that has ended; one text each."""
     if status != 0:
         return [f"ended with status {status}"]
     problems = []
-    if (session / "extrinsic.yaml").read_bytes() != expected:
+    if results_of(session) != expected:
         problems.append("another result")
-    live = session / "samples_live.lcm"
-    lost = accepted_ids(session / "raw.lcm") - kept_ids(live if live.exists() else session / "samples.lcm")
-    if lost:
-        problems.append(f"lost the accepted samples {sorted(lost)}")
-    for log in session.glob("*.lcm"):
+    for folder, accepted in accepted_ids(session / "raw.lcm").items():
+        live = session / folder / "samples_live.lcm"
+        lost = accepted - kept_ids(live if live.exists() else session / folder / "samples.lcm")
+        if lost:
+            problems.append(f"lost the accepted samples {sorted(lost)} {folder}")
+    for log in session.rglob("*.lcm"):
         events = sum(28 + len(channel.encode()) + len(message) for channel, message in log_events(log))
         if events != log.stat().st_size:
             problems.append(f"{log.name} ends within an event")
@@ -105,44 +134,66 @@ def run_undisturbed(rig, session):
     wait_until_running(run)
     begin = time.monotonic()
     said = run.stdout.readline()
+    while said.startswith("its pairs: "):  # tools/up goes on
+        said = run.stdout.readline()
     duration = time.monotonic() - begin
     said += run.communicate()[0]
     if run.returncode != 0:
         sys.exit(f"the undisturbed session failed: {said}")
-    return (session / "extrinsic.yaml").read_bytes(), duration
+    result = results_of(session)
+    if "rig_extrinsics.yaml" in result:
+        recorded, frames = results_of_recording(rig, session)
+        if recorded != result:
+            sys.exit(f"calibrate_rig makes another result of {session}/raw.lcm, which has {dict(frames)}")
+    return result, duration
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("rig", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, required=True, help="the sessions' folder, made anew")
-    parser.add_argument("--kills", type=int, default=50)
+    parser.add_argument("--kills", type=int, default=50, help="sessions with kills")
+    parser.add_argument("--at-once", type=int, default=1, help="kills a session")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--module", choices=MODULES, help="just this one")
+    parser.add_argument("--module", help="just this one")
     args = parser.parse_args()
+    modules = programs_of(args.rig)
+    if args.module and args.module not in modules:
+        parser.error(f"--module must be one of {', '.join(modules)}")
     rng = random.Random(args.seed)
     shutil.rmtree(args.out, ignore_errors=True)
     args.out.mkdir(parents=True)
     expected, duration = run_undisturbed(args.rig, args.out / "undisturbed")
 
-    order = [args.module] if args.module else rng.sample(MODULES, len(MODULES))
-    num_killed = num_good = 0
+    order = [args.module] if args.module else rng.sample(modules, len(modules))
+    next_kill = num_killed = num_good = 0
     while num_killed < args.kills:
-        module, delay = order[num_killed % len(order)], rng.uniform(0, duration)
+        kills = []
+        for delay in sorted(rng.uniform(0, duration) for _ in range(args.at_once)):
+            kills.append((order[next_kill % len(order)], delay))
+            next_kill += 1
         session = args.out / "killed"
         shutil.rmtree(session, ignore_errors=True)
         run = start(args.rig, session)
         wait_until_running(run)
-        time.sleep(delay)
-        is_killed = kill_module(session, module)
+        begin = time.monotonic()
+        are_killed = []
+        for module, delay in kills:
+            time.sleep(max(0, begin + delay - time.monotonic()))
+            are_killed.append(kill_module(session, module))
         said = run.communicate()[0]
-        if not is_killed:
+        if not any(are_killed):
             continue  # a driver that had ended: at another moment
         num_killed += 1
-        problems = problems_of(session, run.returncode, expected)
+        is_driver_killed = any(is_killed and "_driver" in module
+                               for (module, _), is_killed in zip(kills, are_killed))
+        wanted = expected
+        if is_driver_killed and "rig_extrinsics.yaml" in expected:
+            wanted, _ = results_of_recording(args.rig, session)
+        problems = problems_of(session, run.returncode, wanted)
         num_good += not problems
-        print(f"{num_killed}: {module} after {delay:.2f} s: {'; '.join(problems) or 'the same result'}",
-              flush=True)
+        told = ", ".join(f"{module} after {delay:.2f} s" for module, delay in kills)
+        print(f"{num_killed}: {told}: {'; '.join(problems) or 'the same result'}", flush=True)
         if problems:
             print(said, flush=True)
             session.rename(args.out / f"failed_{num_killed}")

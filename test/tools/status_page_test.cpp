@@ -1,6 +1,7 @@
 #include "rig_status/status_page.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -60,7 +61,7 @@ module_status_t StatusOf(const std::string& session, std::int64_t seq) {
 }
 
 TEST(StatusPage, NamesTwoSessionsThatRunTheSameModule) {
-  StatusPage page(Channels{}, {"assessor"}, At(0));
+  StatusPage page(PlanOfPair({}), {"assessor"}, At(0));
   page.Take(StatusOf("a:/one", 7), At(0));
   EXPECT_THAT(page.health().heartbeats().Rivals(At(0)), IsEmpty());
   EXPECT_THAT(page.health().heartbeats().Rivals(At(0), "a:/one"), IsEmpty());
@@ -79,7 +80,7 @@ TEST(StatusPage, NamesTwoSessionsThatRunTheSameModule) {
 
 // tools/up --only: the others may be another host's.
 TEST(StatusPage, WhatWasNotStartedHereIsNoFaultUnlessSomethingIsWaitedFor) {
-  StatusPage page(Channels{}, {}, At(0));
+  StatusPage page(PlanOfPair({}), {}, At(0));
   SessionFacts facts;
   facts.is_supervised = true;
   facts.programs["assessor"].history.is_running = true;
@@ -104,7 +105,7 @@ TEST(StatusPage, WhatWasNotStartedHereIsNoFaultUnlessSomethingIsWaitedFor) {
 }
 
 TEST(StatusPage, LossesAreNotGood) {
-  StatusPage page(Channels{}, {"assessor"}, At(0));
+  StatusPage page(PlanOfPair({}), {"assessor"}, At(0));
   module_status_t status = Status("assessor", 1, "running");
   AddChannel(Channel("CALIB_SAMPLES", 9, 1), &status);
   page.Take(status, At(0));
@@ -112,7 +113,7 @@ TEST(StatusPage, LossesAreNotGood) {
 }
 
 TEST(StatusPage, NamesWhoWasNeverHeard) {
-  StatusPage page(Channels{}, {"lidar_driver", "assessor"}, At(0));
+  StatusPage page(PlanOfPair({}), {"lidar_driver", "assessor"}, At(0));
   page.Take(Status("assessor", 1, "running"), At(0));
   EXPECT_FALSE(page.IsAllGood(At(0)));
   EXPECT_THAT(page.Text(At(0)),
@@ -122,7 +123,7 @@ TEST(StatusPage, NamesWhoWasNeverHeard) {
 }
 
 TEST(StatusPage, ADriverThatEndedBeforeAnyoneListenedIsNotSilent) {
-  StatusPage page(Channels{}, {"lidar_driver", "camera_driver"}, At(0));
+  StatusPage page(PlanOfPair({}), {"lidar_driver", "camera_driver"}, At(0));
   SessionFacts facts;
   facts.programs["lidar_driver"].history.has_ended_well = true;
   page.Take(facts, At(0));
@@ -135,7 +136,7 @@ TEST(StatusPage, ADriverThatEndedBeforeAnyoneListenedIsNotSilent) {
 }
 
 TEST(StatusPage, IsSilentAfterThreeSecondsWithoutAHeartbeat) {
-  StatusPage page(Channels{}, {"assessor"}, At(0));
+  StatusPage page(PlanOfPair({}), {"assessor"}, At(0));
   page.Take(Status("assessor", 1, "running"), At(10));
   EXPECT_EQ(page.health().HealthOf("assessor", At(13)), Health::kGood);
   EXPECT_EQ(page.health().HealthOf("assessor", At(13.1)), Health::kSilent);
@@ -145,7 +146,7 @@ TEST(StatusPage, IsSilentAfterThreeSecondsWithoutAHeartbeat) {
 }
 
 TEST(StatusPage, AModuleThatSaidThatItHasEndedIsNotSilent) {
-  StatusPage page(Channels{}, {"lidar_driver", "camera_driver"}, At(0));
+  StatusPage page(PlanOfPair({}), {"lidar_driver", "camera_driver"}, At(0));
   page.Take(Status("lidar_driver", 9, "done"), At(0));
   page.Take(Status("camera_driver", 9, "stopped"), At(0));
   EXPECT_TRUE(page.IsAllGood(At(100)));
@@ -153,7 +154,7 @@ TEST(StatusPage, AModuleThatSaidThatItHasEndedIsNotSilent) {
 }
 
 TEST(StatusPage, AFailedModuleIsNotGood) {
-  StatusPage page(Channels{}, {"assessor"}, At(0));
+  StatusPage page(PlanOfPair({}), {"assessor"}, At(0));
   page.Take(Status("assessor", 3, "failed: disk full"), At(0));
   EXPECT_EQ(page.health().HealthOf("assessor", At(0)), Health::kFailed);
   EXPECT_FALSE(page.IsAllGood(At(0)));
@@ -161,7 +162,7 @@ TEST(StatusPage, AFailedModuleIsNotGood) {
 }
 
 TEST(StatusPage, TellsWhoLostHowManyOfWhat) {
-  StatusPage page(Channels{}, {"lidar_board_detector"}, At(0));
+  StatusPage page(PlanOfPair({}), {"lidar_board_detector"}, At(0));
   module_status_t status = Status("lidar_board_detector", 1, "running");
   AddChannel(Channel("LIDAR_POINTS", 95, 5), &status);
   page.Take(status, At(0));
@@ -171,7 +172,7 @@ TEST(StatusPage, TellsWhoLostHowManyOfWhat) {
 }
 
 TEST(StatusPage, RateOfSendingIsThatBetweenTwoHeartbeats) {
-  StatusPage page(Channels{}, {"lidar_driver"}, At(0));
+  StatusPage page(PlanOfPair({}), {"lidar_driver"}, At(0));
   module_status_t status = Status("lidar_driver", 1, "running");
   status.num_published = 100;
   page.Take(status, At(0));
@@ -182,7 +183,7 @@ TEST(StatusPage, RateOfSendingIsThatBetweenTwoHeartbeats) {
 }
 
 TEST(StatusPage, ANumberingThatBeginsAnewIsARestart) {
-  StatusPage page(Channels{}, {"assessor"}, At(0));
+  StatusPage page(PlanOfPair({}), {"assessor"}, At(0));
   for (const std::int64_t seq : {7, 8, 1, 2, 1}) {
     page.Take(Status("assessor", seq, "running"), At(0));
   }
@@ -190,7 +191,7 @@ TEST(StatusPage, ANumberingThatBeginsAnewIsARestart) {
 }
 
 TEST(StatusPage, ShowsTheMostFrequentResultsAndMissesFirst) {
-  StatusPage page(Channels{}, {"assessor"}, At(0));
+  StatusPage page(PlanOfPair({}), {"assessor"}, At(0));
   module_status_t status = Status("assessor", 1, "running");
   AddCounter("a", 1, &status);
   AddCounter("b", 30, &status);
@@ -202,7 +203,7 @@ TEST(StatusPage, ShowsTheMostFrequentResultsAndMissesFirst) {
 }
 
 TEST(StatusPage, KeepsTheLastFiveEvents) {
-  StatusPage page(Channels{}, {}, At(0));
+  StatusPage page(PlanOfPair({}), {}, At(0));
   for (int i = 1; i <= 6; ++i) {
     event_t event{};
     event.kind = i == 6 ? "rejected" : "accepted";
@@ -217,8 +218,39 @@ TEST(StatusPage, KeepsTheLastFiveEvents) {
 }
 
 // Of all modules, with more faults and events than have room.
+TEST(StatusPage, ShowsThePairsOfARigAndWhatHelpsThemNext) {
+  StatusPage page(PlanOfPair({}), {}, At(0));
+  rig_extrinsics_t rig{};
+  rig.verdict_headline = "Good.";
+  rig.advice = "Show the board to front_left.";
+  rig.weakest_pair = "front_left";
+  rig_pair_t pair{};
+  pair.has_session = 1;
+  pair.name = "front_left";
+  pair.num_samples = 23;
+  pair.sigma_rad = 1e-3;
+  pair.sigma_m = 2e-3;
+  pair.verdict_grade = "good";
+  pair.verdict_headline = "Good.";
+  rig.pairs.push_back(pair);
+  pair.name = "rear_left";
+  pair.num_samples = 0;
+  pair.sigma_rad = pair.sigma_m = std::numeric_limits<double>::quiet_NaN();
+  pair.problem = "the two never saw the board rest at one time";
+  rig.pairs.push_back(pair);
+  page.Take(rig);
+  const std::string text = page.Text(At(1));
+  EXPECT_THAT(text,
+              HasSubstr("front_left      23   0.057 deg     2.0 mm  good: Good. (weakest)\n"));
+  EXPECT_THAT(text, HasSubstr("  the two never saw the board rest at one time\n"));
+  EXPECT_THAT(text, HasSubstr("rig     Good.\nnext    Show the board to front_left.\n"));
+  rig.problem = "no pair joins these parts of the rig: front | left";
+  page.Take(rig);
+  EXPECT_THAT(page.Text(At(1)), HasSubstr("rig     no tree yet: no pair joins these parts"));
+}
+
 TEST(StatusPage, FitsATerminalOf24Rows) {
-  StatusPage page(Channels{}, AllModuleNames(), At(0));
+  StatusPage page(PlanOfPair({}), AllModuleNames(), At(0));
   for (const std::string& module : AllModuleNames()) {
     module_status_t status = Status(module, 9, "running");
     AddChannel(Channel("LIDAR_POINTS", 95, 5), &status);
@@ -231,7 +263,7 @@ TEST(StatusPage, FitsATerminalOf24Rows) {
 }
 
 TEST(StatusPage, ListsModulesThatNobodyAskedFor) {
-  StatusPage page(Channels{}, {"assessor"}, At(0));
+  StatusPage page(PlanOfPair({}), {"assessor"}, At(0));
   page.Take(Status("assessor", 1, "running"), At(0));
   page.Take(Status("stranger", 1, "running"), At(0));
   EXPECT_THAT(page.Text(At(100)), AllOf(HasSubstr("stranger "), HasSubstr("\nsilent  assessor\n")));

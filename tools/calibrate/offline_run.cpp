@@ -1,6 +1,5 @@
 #include "calibrate/offline_run.hpp"
 
-#include <array>
 #include <chrono>
 #include <exception>
 #include <set>
@@ -11,7 +10,6 @@
 
 #include "messaging/convert_result.hpp"
 #include "messaging/log.hpp"
-#include "messaging/session_views.hpp"
 #include "sample_collector/session_log.hpp"
 
 namespace voqcal {
@@ -35,18 +33,13 @@ OfflineRun::OfflineRun(const Rig& rig,
       lidar_detector_(DetectorUnless<LidarBoardDetectorNode>(boards.lidar, rig, &bus_)),
       camera_detector_(DetectorUnless<CameraBoardDetectorNode>(boards.camera, rig, &bus_)),
       collector_(rig, &bus_, session_folder),
-      selector_(rig, &bus_),
-      estimator_(rig, &bus_),
       grounds_(rig.camera),
-      scene_views_(ViewsOfSession(rig.board,
-                                  rig.camera,
-                                  rig.scene_check.view,
-                                  session_folder / kSamplesLogName,
-                                  [this](const BoardSample& sample, const cv::Mat& image) {
-                                    grounds_.Add(sample, image);
-                                  })),
-      refiner_(rig, &bus_, scene_views_),
-      assessor_(rig, &bus_, session_folder, scene_views_),
+      chain_(rig,
+             &bus_,
+             session_folder,
+             [this](const BoardSample& sample, const cv::Mat& image) {
+               grounds_.Add(sample, image);
+             }),
       averaged_{} {
   bus_.Subscribe<extrinsic_averaged_t>(channels_.extrinsic_averaged,
                                        Queue::kState,
@@ -130,13 +123,7 @@ void OfflineRun::FeedSamples(const std::vector<BoardSample>& samples) {
 void OfflineRun::Finish(bool is_collecting_only) {
   collector_.Finish();
   HandleAll();
-  if (is_collecting_only) return;
-  const std::array<Module*, 4> stages = {&selector_, &estimator_, &refiner_, &assessor_};
-  for (Module* stage : stages) {
-    while (stage->Step()) {
-    }
-    HandleAll();
-  }
+  if (!is_collecting_only) chain_.Run();
 }
 
 std::vector<BoardSample> OfflineRun::SamplesAsChosen() const {
@@ -163,13 +150,12 @@ std::string OfflineRun::Losses() const {
 }
 
 std::vector<const Module*> OfflineRun::modules() const {
-  return {boards_.lidar != nullptr ? &boards_.lidar->detector() : &*lidar_detector_,
-          boards_.camera != nullptr ? &boards_.camera->detector() : &*camera_detector_,
-          &collector_,
-          &selector_,
-          &estimator_,
-          &refiner_,
-          &assessor_};
+  std::vector<const Module*> modules = {
+      boards_.lidar != nullptr ? &boards_.lidar->detector() : &*lidar_detector_,
+      boards_.camera != nullptr ? &boards_.camera->detector() : &*camera_detector_,
+      &collector_};
+  for (const Module* module : chain_.modules()) modules.push_back(module);
+  return modules;
 }
 
 void OfflineRun::HandleAll() {

@@ -7,19 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "assessor/assessor_node.hpp"
 #include "calibrate/detected_boards.hpp"
 #include "calibrate/picture_grounds.hpp"
 #include "calibrate/recording_clocks.hpp"
 #include "camera_board_detector/camera_board_detector_node.hpp"
-#include "extrinsic_estimator/extrinsic_estimator_node.hpp"
-#include "extrinsic_refiner/extrinsic_refiner_node.hpp"
 #include "lidar_board_detector/lidar_board_detector_node.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/log.hpp"
 #include "rig/rig.hpp"
+#include "rig_calibrator/pair_chain.hpp"
 #include "sample_collector/sample_collector_node.hpp"
-#include "voq_selector/voq_selector_node.hpp"
 #include "voqcal/event_t.hpp"
 #include "voqcal/extrinsic_averaged_t.hpp"
 
@@ -62,7 +59,7 @@ class OfflineRun {
   const std::vector<BoardSample>& samples() const { return collector_.samples(); }
   /// The samples, each with the lidar's candidate that was chosen for it.
   std::vector<BoardSample> SamplesAsChosen() const;
-  const AssessorNode& assessor() const { return assessor_; }
+  const AssessorNode& assessor() const { return chain_.assessor(); }
   /// Of the samples that were used, after Finish.
   const KeptGrounds& grounds() const { return grounds_; }
   /// The newest EXTRINSIC_AVERAGED: the chosen sets and what each gave.
@@ -89,12 +86,8 @@ class OfflineRun {
   std::optional<LidarBoardDetectorNode> lidar_detector_;
   std::optional<CameraBoardDetectorNode> camera_detector_;
   SampleCollectorNode collector_;
-  VoqSelectorNode selector_;
-  ExtrinsicEstimatorNode estimator_;
   KeptGrounds grounds_;
-  SceneViewsOf scene_views_;
-  ExtrinsicRefinerNode refiner_;
-  AssessorNode assessor_;
+  PairChain chain_;
   extrinsic_averaged_t averaged_;
   std::vector<event_t> events_;
   std::int64_t num_damaged_ = 0;    // places of the recording

@@ -79,7 +79,7 @@ void RequireSamePaths(const Rig& rig,
   Rig copy;
   copy.path = copy_path;
   LensInRig may_lack;
-  ReadRigSections({copy_path, {}}, &document, &copy, &may_lack);
+  ReadRigSections({copy_path, {}}, &document, &copy, &may_lack, SensorChoice::kCamera);
   const auto before = PathsOf(rig);
   const auto after = PathsOf(copy);
   const auto whole = [](const std::filesystem::path& path) {

@@ -7,7 +7,6 @@
 #include <memory>
 #include <mutex>
 #include <numeric>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -19,9 +18,7 @@
 #include "calibrate/finish_session.hpp"
 #include "calibrate/offline_run.hpp"
 #include "common/progress.hpp"
-#include "core/geometry/rigid.hpp"
 #include "core/parallel.hpp"
-#include "core/sensor_network/common_boards.hpp"
 
 namespace voqcal {
 namespace {
@@ -129,42 +126,13 @@ std::size_t MostAtOnce() {
       std::max(1.0, (AvailableBytes() - bytes_of_scenes) / kBytesOfPair));
 }
 
-/// A pose of the board in a session, as its camera saw it.
-struct SeenBoard {
-  std::int64_t camera_utime = 0;
-  BoardPose pose;
-};
-
-/// A pair, and what its camera saw.
-struct Session {
-  CalibratedPair pair;
-  bool use_log_times = false;  ///< For the boards' times.
-  std::vector<SeenBoard> boards;
-};
-
-std::vector<SeenBoard> BoardsOf(const OfflineRun& run) {
-  const auto& result = run.assessor().result();
-  std::vector<SeenBoard> boards;
-  for (const BoardSample& sample : run.samples()) {
-    const bool is_used =
-        !result || std::count(result->used_ids.begin(), result->used_ids.end(), sample.id) > 0;
-    if (is_used) boards.push_back({sample.camera_utime, sample.camera.pose});
-  }
-  return boards;
-}
-
-Session Calibrate(const Rig& rig,
-                  const std::filesystem::path& log,
-                  bool use_log_times,
-                  const BoardsOfPair& boards,
-                  const RigFolders& folders) {
-  Session calibrated;
-  calibrated.use_log_times = use_log_times;
-  CalibratedPair& pair = calibrated.pair;
-  pair.folder = FolderOf(rig);
-  pair.extrinsic.from = rig.lidar_name;
-  pair.extrinsic.to = rig.camera_name;
-  const SessionFolders session_folders = {folders.scratch / pair.folder, folders.out / pair.folder};
+PairSession Calibrate(const Rig& rig,
+                      const std::filesystem::path& log,
+                      bool use_log_times,
+                      const BoardsOfPair& boards,
+                      const RigFolders& folders) {
+  const std::string folder = FolderOf(rig);
+  const SessionFolders session_folders = {folders.scratch / folder, folders.out / folder};
   std::filesystem::create_directories(session_folders.scratch);
   OfflineRun run(rig, session_folders.scratch, boards);
   const auto times = use_log_times ? RecordingTimes::kLog : RecordingTimes::kStamps;
@@ -174,110 +142,29 @@ Session Calibrate(const Rig& rig,
     FinishSession(rig, log, session_folders, &run);
   } catch (const NoCalibration& error) {
     std::istringstream lines(error.what());
-    for (std::string line; std::getline(lines, line);) spdlog::warn("{}: {}", pair.folder, line);
-    pair.problem = run.samples().empty() ? "the two never saw the board rest at one time"
-                                         : run.assessor().problem();
-    calibrated.boards = BoardsOf(run);
-    return calibrated;
+    for (std::string line; std::getline(lines, line);) spdlog::warn("{}: {}", folder, line);
   }
-  calibrated.boards = BoardsOf(run);
-  const CalibrationResult& result = *run.assessor().result();
-  pair.extrinsic.T_to_from = result.T_camera_lidar;
-  pair.extrinsic.covariance = result.covariance;
-  pair.verdict = VerdictOf(result);
-  pair.num_samples = static_cast<int>(result.used_ids.size());
-  pair.samples_sha256 = result.made_from.log_sha256;
-  if (!result.covariance.allFinite()) {
-    pair.problem = "its poses are too few to tell how certain it is";
-  }
-  return calibrated;
-}
-
-/// A pose that is in the list already would count twice.
-bool IsNew(const BoardPose& pose,
-           const std::vector<CommonBoard>& boards,
-           const SamplePickerOptions& options) {
-  return std::none_of(boards.begin(), boards.end(), [&](const CommonBoard& each) {
-    return (each.from.centre_m - pose.centre_m).norm() < options.min_new_distance_m &&
-           AngleBetween(each.from.normal, pose.normal) < options.min_new_angle_rad;
-  });
-}
-
-/// Adds the poses that both cameras saw at one time. Each session's board was at rest.
-void AddCommon(const std::vector<SeenBoard>& from,
-               const std::vector<SeenBoard>& to,
-               const SamplePickerOptions& options,
-               std::vector<CommonBoard>* boards) {
-  for (const SeenBoard& each : from) {
-    for (const SeenBoard& other : to) {
-      const double apart_s =
-          1e-6 * static_cast<double>(std::abs(each.camera_utime - other.camera_utime));
-      if (apart_s > options.max_pair_offset_s || !IsNew(each.pose, *boards, options)) continue;
-      boards->push_back({each.pose, other.pose});
-    }
-  }
-}
-
-/// Two cameras, by what their sessions have in common; nothing if that is too little.
-std::optional<CalibratedPair> CalibrateCameras(const Rig& from,
-                                               const Rig& to,
-                                               const std::vector<Rig>& rigs,
-                                               const std::vector<Session>& sessions) {
-  std::vector<CommonBoard> boards;
-  bool is_of_two_times = false;
-  for (std::size_t i = 0; i < rigs.size(); ++i) {
-    for (std::size_t j = 0; j < rigs.size(); ++j) {
-      if (rigs[i].camera_name != from.camera_name || rigs[j].camera_name != to.camera_name)
-        continue;
-      if (sessions[i].use_log_times != sessions[j].use_log_times) {  // clocks are judged by pair
-        is_of_two_times = true;
-        continue;
-      }
-      AddCommon(sessions[i].boards, sessions[j].boards, from.sample_collector, &boards);
-    }
-  }
-  if (is_of_two_times) {
-    spdlog::warn(
-        "{}: boards whose times are stamps are not compared with those whose times are the log's",
-        PairName(from.camera_name, to.camera_name));
-  }
-  const auto extrinsic = PairOfCameras(from.camera_name, to.camera_name, boards, to.camera);
-  if (!extrinsic || !extrinsic->covariance.allFinite()) return std::nullopt;
-  CalibratedPair pair;
-  pair.extrinsic = *extrinsic;
-  pair.num_samples = static_cast<int>(boards.size());
-  return pair;
-}
-
-void AddPairsOfCameras(const std::vector<Rig>& rigs,
-                       const std::vector<Session>& sessions,
-                       std::vector<CalibratedPair>* pairs) {
-  std::vector<const Rig*> cameras;
-  for (const Rig& rig : rigs) {
-    const bool is_there = std::any_of(cameras.begin(), cameras.end(), [&rig](const Rig* each) {
-      return each->camera_name == rig.camera_name;
-    });
-    if (!is_there) cameras.push_back(&rig);
-  }
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    for (std::size_t j = i + 1; j < cameras.size(); ++j) {
-      const auto pair = CalibrateCameras(*cameras[i], *cameras[j], rigs, sessions);
-      if (pair) pairs->push_back(*pair);
-    }
-  }
+  PairSession session;
+  session.lidar = rig.lidar_name;
+  session.camera = rig.camera_name;
+  session.lens = rig.camera;
+  session.sampling = rig.sample_collector;
+  session.use_log_times = use_log_times;
+  TakeResult(run.samples(), run.assessor().result(), run.assessor().problem(), &session);
+  return session;
 }
 
 }  // namespace
 
 std::string FolderOf(const Rig& pair) { return PairName(pair.lidar_name, pair.camera_name); }
 
-std::vector<CalibratedPair> CalibratePairs(const std::vector<Rig>& pairs,
-                                           const std::filesystem::path& log,
-                                           RecordingTimes times,
-                                           const RigFolders& folders) {
+std::vector<PairSession> CalibratePairs(const std::vector<Rig>& pairs,
+                                        const std::filesystem::path& log,
+                                        RecordingTimes times,
+                                        const RigFolders& folders) {
   const std::vector<bool> use_log_times = UseLogTimes(pairs, log, times);
   const BoardsBySensor boards = Detect(DetectionsOf(pairs, use_log_times), log);
-  std::vector<Session> sessions(pairs.size());
+  std::vector<PairSession> sessions(pairs.size());
   ParallelFor(
       pairs.size(),
       [&](std::size_t i) {
@@ -287,10 +174,7 @@ std::vector<CalibratedPair> CalibratePairs(const std::vector<Rig>& pairs,
         sessions[i] = Calibrate(pairs[i], log, use_log, own, folders);
       },
       MostAtOnce());
-  std::vector<CalibratedPair> calibrated;
-  for (const Session& session : sessions) calibrated.push_back(session.pair);
-  AddPairsOfCameras(pairs, sessions, &calibrated);
-  return calibrated;
+  return sessions;
 }
 
 }  // namespace voqcal

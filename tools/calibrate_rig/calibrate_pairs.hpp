@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calibrate/recording_clocks.hpp"
-#include "result/rig_extrinsics.hpp"
+#include "result/join_rig.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {
@@ -20,14 +20,13 @@ struct RigFolders {
 std::string FolderOf(const Rig& pair);
 
 /// Does with each pair of a rig what calibrate does, but detects the boards of each sensor once for
-/// all its pairs. Each pair's session is that of calibrate, byte for byte. Behind them come the
-/// pairs of cameras whose sessions have at least three boards in common.
+/// all its pairs. Each pair's session is that of calibrate, byte for byte.
 ///
 /// @throws std::runtime_error naming the log and the cause. That a pair gives no calibration is not
 ///     thrown but told, and its `problem`.
-std::vector<CalibratedPair> CalibratePairs(const std::vector<Rig>& pairs,
-                                           const std::filesystem::path& log,
-                                           RecordingTimes times,
-                                           const RigFolders& folders);
+std::vector<PairSession> CalibratePairs(const std::vector<Rig>& pairs,
+                                        const std::filesystem::path& log,
+                                        RecordingTimes times,
+                                        const RigFolders& folders);
 
 }  // namespace voqcal

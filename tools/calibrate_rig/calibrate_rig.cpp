@@ -141,14 +141,6 @@ void RequireFolder(const CalibrateRigArgs& args, const std::vector<Rig>& pairs) 
   }
 }
 
-SensorNetwork Join(const RigExtrinsics& result, const std::string& reference) {
-  std::vector<SensorPair> joined;
-  for (const CalibratedPair& pair : result.pairs) {
-    if (pair.problem.empty()) joined.push_back(pair.extrinsic);
-  }
-  return JoinPairs(NamesOf({result.lidars, result.cameras}), reference, joined);
-}
-
 /// @throws std::runtime_error unless the rig is one piece.
 void RequireOnePiece(const CalibrateRigArgs& args, const RigExtrinsics& result) {
   if (result.network.IsUsable()) return;
@@ -168,17 +160,13 @@ void CalibrateRig(const CalibrateRigArgs& args) {
   RequireFolder(args, pairs);
   TellDoubts(pairs);
   RequireChannels(args, pairs);
-  RigExtrinsics result;
+  std::vector<PairSession> sessions;
   {
     const ScratchFolder scratch(args.out);
-    result.pairs = CalibratePairs(pairs, args.log, args.times, {scratch.path(), args.out});
+    sessions = CalibratePairs(pairs, args.log, args.times, {scratch.path(), args.out});
   }
-  result.rig = pairs.front().rig_name;
-  result.lidars = sensors.lidars;
-  result.cameras = sensors.cameras;
-  result.rig_sha256 = pairs.front().sha256;
-  result.version = VOQCAL_VERSION;
-  result.network = Join(result, reference);
+  const RigExtrinsics result = JoinSessions(
+      sessions, reference, {pairs.front().rig_name, pairs.front().sha256, VOQCAL_VERSION});
   RequireOnePiece(args, result);
   WriteFileAtomically(args.out / kRigResultName, ToYaml(result));
   std::cout << Summary(result) << "written\n  " << (args.out / kRigResultName).string() << '\n';

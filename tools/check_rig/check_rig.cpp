@@ -13,6 +13,7 @@
 #include "common/tool_main.hpp"
 #include "core/camera_detection/calibration_target.hpp"
 #include "core/format.hpp"
+#include "health/session_programs.hpp"
 #include "rig/frame_pairing.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_doubts.hpp"
@@ -127,6 +128,29 @@ void JudgeRigs(const std::filesystem::path& path, const std::vector<Rig>& pairs)
   std::printf("%s: is usable\n", path.c_str());
 }
 
+/// A line each: name, module, sensors ("-": as the rig was given), folder within the session's.
+void PrintPrograms(const std::filesystem::path& path) {
+  for (const SessionProgram& program : ProgramsOfRig(path)) {
+    std::printf("%s\t%s\t%s\t%s\n",
+                program.name.c_str(),
+                program.module.c_str(),
+                program.sensors.empty() ? "-" : program.sensors.c_str(),
+                program.folder.empty() ? "." : program.folder.c_str());
+  }
+}
+
+/// All pairs share it; a rig in which another pair is wrong is wrong.
+std::string LcmUrlOf(const std::filesystem::path& path, bool may_lack_lens) {
+  if (!may_lack_lens) return LoadPairs(path).front().lcm_url;
+  LensInRig lens;
+  return LoadRig(PairsOfRig(path).front(), &lens).lcm_url;
+}
+
+std::string NameOf(const std::filesystem::path& path) {
+  const std::vector<Rig> pairs = LoadPairs(path);
+  return pairs.size() == 1 ? pairs.front().name : pairs.front().rig_name;
+}
+
 // What calibrate reads of a recording, which also holds what the live modules made of it.
 void PrintInputChannels(const std::vector<Rig>& pairs) {
   std::vector<std::string> names;
@@ -156,9 +180,13 @@ int main(int argc, char** argv) {
   bool is_url_only = false;
   bool is_channels_only = false;
   bool is_name_only = false;
+  bool is_programs_only = false;
   bool may_lack_lens = false;
   app.add_option("rig", path, "The rig file (YAML)")->required();
   app.add_flag("--name", is_name_only, "Print just the rig's name, for scripts");
+  app.add_flag("--programs",
+               is_programs_only,
+               "Print just what a live session runs, for scripts: name, module, sensors, folder");
   CLI::Option* url = app.add_flag("--lcm-url", is_url_only, "Print just the LCM URL, for scripts");
   app.add_flag("--without-lens", may_lack_lens, "The camera's numbers may be missing (to record)")
       ->needs(url);
@@ -169,13 +197,12 @@ int main(int argc, char** argv) {
   return voqcal::RunTool(&app, argc, argv, [&] {
     // Scripts ask for these one after the other: what there is to remark was said with the URL.
     if (is_name_only || is_channels_only) spdlog::set_level(spdlog::level::err);
-    if (is_url_only) {  // which all pairs share
-      const std::filesystem::path pair = voqcal::PairsOfRig(path).front();
-      voqcal::LensInRig lens;
-      const voqcal::Rig rig = may_lack_lens ? voqcal::LoadRig(pair, &lens) : voqcal::LoadRig(pair);
-      std::puts(rig.lcm_url.c_str());
+    if (is_url_only) {
+      std::puts(voqcal::LcmUrlOf(path, may_lack_lens).c_str());
     } else if (is_name_only) {
-      std::puts(voqcal::LoadRig(path).name.c_str());
+      std::puts(voqcal::NameOf(path).c_str());
+    } else if (is_programs_only) {
+      voqcal::PrintPrograms(path);
     } else if (is_channels_only) {
       voqcal::PrintInputChannels(voqcal::LoadPairs(path));
     } else {

@@ -34,6 +34,7 @@ install(FILES tools/figures/numbers.md DESTINATION tools/figures)
 install(FILES modules/README.md DESTINATION modules)
 install(FILES modules/lidar_driver/README.md DESTINATION modules/lidar_driver)
 install(FILES modules/extrinsic_monitor/README.md DESTINATION modules/extrinsic_monitor)
+install(FILES modules/rig_calibrator/README.md DESTINATION modules/rig_calibrator)
 install(DIRECTORY tools/pictures DESTINATION tools
   FILES_MATCHING PATTERN *.svg PATTERN *.jpg PATTERN *.png)
 

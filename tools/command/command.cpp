@@ -1,4 +1,4 @@
-// command: tells the sample collector of a running rig what to do.
+// command: tells the sample collectors of a running rig what to do.
 
 #include <chrono>
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "command/rig_command.hpp"
 #include "common/run_program.hpp"
 #include "common/tool_main.hpp"
 #include "messaging/bus.hpp"
@@ -183,8 +184,13 @@ CommandArgs WithSession(CommandArgs args) {
 
 void Command(const CommandArgs& given) {
   const CommandArgs args = WithSession(given);
-  const Rig rig = LoadRig(args.rig);
+  const std::vector<Rig> pairs = LoadPairs(args.rig);
+  const Rig& rig = pairs.front();
   Bus bus(args.lcm_url.value_or(rig.lcm_url));
+  if (pairs.size() > 1) {
+    const std::chrono::duration<double> wait(args.wait_s);
+    return CommandRig({args.command, wait, args.session}, pairs, &bus);
+  }
   if (args.command == "finish" && args.wait_s > 0) {
     FinishAndWait(args, rig, &bus);
   } else {
@@ -208,8 +214,10 @@ int main(int argc, char** argv) {
       ->required()
       ->check(CLI::IsMember({"capture", "discard", "finish", "reset"}));
   app.add_option("--sample", args.sample_id, "Which sample to discard; without it the newest");
-  app.add_option(
-         "--wait", args.wait_s, "After finish: wait for the result, at most this many seconds")
+  app.add_option("--wait",
+                 args.wait_s,
+                 "After finish: wait for the result, at most this many seconds (of several "
+                 "sensors: for each pair's)")
       ->check(CLI::NonNegativeNumber);
   auto* which = app.add_option_group("which", "At least one of:")->require_option(1, 2);
   which

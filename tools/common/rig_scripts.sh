@@ -15,9 +15,22 @@ else
   how_to_build="install the package again"
 fi
 
-# In the order of the flow; every reader reads what a driver, or one before it, says.
-mapfile -t drivers < <(grep '_driver$' "$root/modules/names.txt")
-mapfile -t readers < <(grep -v '_driver$' "$root/modules/names.txt")
+# What a session of the rig runs, by the programs' names: drivers and readers, in the order of the flow (every reader reads
+# what a driver, or one before it, says), and of each its module, what it is given as the rig, and its files' folder.
+declare -A module_of rig_of folder_of
+drivers=() readers=()
+read_programs() {  # RIG
+  local name module sensors folder file=$1 lines
+  [ -f "$file" ] || file=${1%#*}
+  lines=$("$bin/check_rig" "$1" --programs) || exit 1
+  while IFS=$'\t' read -r name module sensors folder; do
+    module_of[$name]=$module
+    folder_of[$name]=$folder
+    if [ "$sensors" = - ]; then rig_of[$name]=$1; else rig_of[$name]=$file#$sensors; fi
+    case "$module" in *_driver) drivers+=("$name") ;; *) readers+=("$name") ;; esac
+  done <<<"$lines"
+}
+has_several_sensors() { [ ${#drivers[@]} -gt 2 ]; }  # after read_programs
 
 fail() {  # MESSAGE [STATUS]
   echo "$(basename "$0"): $1" >&2
@@ -40,7 +53,7 @@ orphans_of() {  # SESSION
   for pid in $(sed -n "s/.* spawned: '.*' with pid \([0-9]*\)$/\1/p" "$1/supervisord.log"); do
     [ -r "/proc/$pid/cmdline" ] || continue
     while IFS= read -r -d '' arg; do
-      if [[ "$arg" = "$1" || "$arg" = "$1"/raw*.lcm ]]; then echo "$pid"; break; fi
+      if [[ "$arg" = "$1" || "$arg" = "$1"/* ]]; then echo "$pid"; break; fi
     done <"/proc/$pid/cmdline" || true
   done
 }

@@ -11,7 +11,7 @@ STOPPED = {"STOPPED", "EXITED", "FATAL", "UNKNOWN"}
 
 
 def kind(name):
-    return 2 if name == "lcm-logger" else 0 if name.endswith("_driver") else 1
+    return 2 if name == "lcm-logger" else 0 if name.startswith(("lidar_driver", "camera_driver")) else 1
 
 
 def still_running(server, names):

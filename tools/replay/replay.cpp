@@ -8,11 +8,14 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "common/tool_main.hpp"
 #include "core/expected.hpp"
+#include "health/session_programs.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/log.hpp"
 #include "rig/rig.hpp"
@@ -51,8 +54,8 @@ Expected<std::int64_t, std::string> UtimeOf(const LogEvent& event) {
   return message.utime;
 }
 
-/// One sensor's frames: a detector answers each with a board or a miss, and the collector counts
-/// them.
+/// One sensor's frames: a detector answers each with a board or a miss, and the collectors that
+/// hear it count them.
 class Frames {
  public:
   void Sent(std::int64_t utime) {
@@ -65,16 +68,17 @@ class Frames {
     if (found != under_way_.end()) under_way_.erase(under_way_.begin(), found + 1);
   }
 
-  /// @param count  of all that came to the collector, from before the replay on.
-  void Counted(std::int64_t count) {
-    if (!count_before_ || count < *count_before_) count_before_ = count - num_sent_;
-    num_counted_ = count - *count_before_;
+  /// @param count  of all that came to that collector, from before the replay on.
+  void Counted(const std::string& collector, std::int64_t count) {
+    const auto [counter, is_new] = counters_.try_emplace(collector);
+    if (is_new || count < counter->second.before) counter->second.before = count - num_sent_;
+    counter->second.num_counted = count - counter->second.before;
   }
 
   void ForgetWhatIsUnderWay() {
     num_unanswered_ += static_cast<std::int64_t>(under_way_.size());
     under_way_.clear();
-    count_before_.reset();
+    counters_.clear();
   }
 
   bool MayMoreCome() const { return under_way_.size() < kMaxUnderWay && !IsCollectorBehind(); }
@@ -82,28 +86,36 @@ class Frames {
   std::int64_t num_unanswered() const { return num_unanswered_; }
 
  private:
+  struct Counter {
+    std::int64_t before = 0;
+    std::int64_t num_counted = 0;
+  };
+
   bool IsCollectorBehind() const {
-    return count_before_ && num_sent_ - num_counted_ >= kMaxUncounted;
+    return std::any_of(counters_.begin(), counters_.end(), [this](const auto& each) {
+      return num_sent_ - each.second.num_counted >= kMaxUncounted;
+    });
   }
 
   std::deque<std::int64_t> under_way_;
   std::int64_t num_sent_ = 0;
   std::int64_t num_unanswered_ = 0;
-  std::optional<std::int64_t> count_before_;  ///< None: the collector was not heard.
-  std::int64_t num_counted_ = 0;
+  std::map<std::string, Counter> counters_;  ///< Of the collectors that were heard.
 };
 
 class Player {
  public:
   explicit Player(const ReplayArgs& args)
-      : rig_(LoadRig(args.rig)), bus_(args.lcm_url.value_or(rig_.lcm_url)) {
-    const Channels& channels = rig_.channels;
-    bus_.Subscribe<lidar_board_t>(
-        channels.lidar_board, Queue::kEvery, [this](const auto& m) { sweeps_.Answered(m.utime); });
-    bus_.Subscribe<camera_board_t>(
-        channels.camera_board, Queue::kEvery, [this](const auto& m) { images_.Answered(m.utime); });
-    bus_.Subscribe<module_status_t>(
-        channels.module_status, Queue::kEvery, [this](const auto& m) { OnStatus(m); });
+      : pairs_(LoadPairs(args.rig)), bus_(args.lcm_url.value_or(pairs_.front().lcm_url)) {
+    for (const Rig& pair : pairs_) {
+      const Channels& channels = pair.channels;
+      passed_on_.insert(channels.camera_info);
+      AddSensor<lidar_board_t>(channels.lidar_points, channels.lidar_board, &lidars_);
+      AddSensor<camera_board_t>(channels.camera_image, channels.camera_board, &cameras_);
+    }
+    bus_.Subscribe<module_status_t>(pairs_.front().channels.module_status,
+                                    Queue::kEvery,
+                                    [this](const auto& m) { OnStatus(m); });
   }
 
   void Play(const std::filesystem::path& log) {
@@ -112,7 +124,7 @@ class Player {
     LogReader reader(log);
     std::int64_t num_played = 0;
     while (const std::optional<LogEvent> event = NextWhole(&reader)) num_played += Play(*event);
-    WaitUntil([this] { return sweeps_.AreAllAnswered() && images_.AreAllAnswered(); });
+    WaitUntil([this] { return AreAllAnswered(); });
     std::printf("%lld messages played\n", static_cast<long long>(num_played));
     for (const auto& [channel, unreadable] : unreadable_) {
       std::printf("%lld %s left out, which no module could read; the first: %s\n",
@@ -124,7 +136,9 @@ class Player {
       std::printf("%lld damaged places of the recording left out\n",
                   static_cast<long long>(reader.num_damaged()));
     }
-    const std::int64_t num_unanswered = sweeps_.num_unanswered() + images_.num_unanswered();
+    std::int64_t num_unanswered = 0;
+    ForEach(
+        [&num_unanswered](const Sensor& each) { num_unanswered += each.frames.num_unanswered(); });
     if (num_unanswered == 0) return;
     throw std::runtime_error(std::to_string(num_unanswered) +
                              " frames were answered by no detector: was one killed?");
@@ -135,6 +149,34 @@ class Player {
     std::int64_t num = 0;
     std::string first_problem;
   };
+  struct Sensor {
+    Frames frames;
+    bool is_read = false;  ///< A detector is there.
+  };
+  using Sensors = std::map<std::string, Sensor>;  ///< By channel.
+
+  template <typename BoardMessage>
+  void AddSensor(const std::string& channel, const std::string& board_channel, Sensors* sensors) {
+    const auto [sensor, is_new] = sensors->try_emplace(channel);
+    if (!is_new) return;
+    bus_.Subscribe<BoardMessage>(
+        board_channel, Queue::kEvery, [frames = &sensor->second.frames](const BoardMessage& m) {
+          frames->Answered(m.utime);
+        });
+  }
+
+  template <typename Action>
+  void ForEach(const Action& action) {
+    for (auto* sensors : {&lidars_, &cameras_}) {
+      for (auto& each : *sensors) action(each.second);
+    }
+  }
+
+  bool AreAllAnswered() {
+    bool are_all = true;
+    ForEach([&are_all](const Sensor& each) { are_all = are_all && each.frames.AreAllAnswered(); });
+    return are_all;
+  }
 
   /// A recording may end within an event: what came before it is played.
   static std::optional<LogEvent> NextWhole(LogReader* reader) try {
@@ -144,14 +186,15 @@ class Player {
   }
 
   int Play(const LogEvent& event) {
-    const Channels& channels = rig_.channels;
-    if (event.channel == channels.calib_command) {
-      WaitUntil([this] { return sweeps_.AreAllAnswered() && images_.AreAllAnswered(); });
-    } else if (event.channel == channels.lidar_points) {
-      if (!MayPlay<pointcloud2_t>(event, is_lidar_read_, &sweeps_)) return 0;
-    } else if (event.channel == channels.camera_image) {
-      if (!MayPlay<image_t>(event, is_camera_read_, &images_)) return 0;
-    } else if (event.channel != channels.camera_info) {
+    const auto lidar = lidars_.find(event.channel);
+    const auto camera = cameras_.find(event.channel);
+    if (event.channel == pairs_.front().channels.calib_command) {
+      WaitUntil([this] { return AreAllAnswered(); });
+    } else if (lidar != lidars_.end()) {
+      if (!MayPlay<pointcloud2_t>(event, &lidar->second)) return 0;
+    } else if (camera != cameras_.end()) {
+      if (!MayPlay<image_t>(event, &camera->second)) return 0;
+    } else if (passed_on_.count(event.channel) == 0) {
       return 0;  // what the recording's own modules said: the live ones say it again
     }
     bus_.PublishBytes(event.channel, event.bytes.data(), event.bytes.size());
@@ -161,16 +204,16 @@ class Player {
   /// Once there is room for a frame. @return false for one that would get no answer: nothing can
   /// read it.
   template <typename Message>
-  bool MayPlay(const LogEvent& event, bool is_read, Frames* frames) {
+  bool MayPlay(const LogEvent& event, Sensor* sensor) {
     const auto utime = UtimeOf<Message>(event);
     if (!utime) {
       Unreadable& unreadable = unreadable_[event.channel];
       if (unreadable.num++ == 0) unreadable.first_problem = utime.error();
       return false;
     }
-    if (!is_read) return true;
-    WaitUntil([frames] { return frames->MayMoreCome(); });
-    frames->Sent(*utime);
+    if (!sensor->is_read) return true;
+    WaitUntil([sensor] { return sensor->frames.MayMoreCome(); });
+    sensor->frames.Sent(*utime);
     return true;
   }
 
@@ -180,29 +223,30 @@ class Player {
     while (!is_met()) {
       bus_.HandleOnce(std::chrono::milliseconds(50));
       if (Clock::now() < end) continue;
-      sweeps_.ForgetWhatIsUnderWay();
-      images_.ForgetWhatIsUnderWay();
+      ForEach([](Sensor& each) { each.frames.ForgetWhatIsUnderWay(); });
     }
   }
 
   void OnStatus(const module_status_t& status) {
-    is_lidar_read_ = is_lidar_read_ || status.module == "lidar_board_detector";
-    is_camera_read_ = is_camera_read_ || status.module == "camera_board_detector";
-    if (status.module != "sample_collector") return;
+    const std::string module = ModuleOf(status.module);
+    const bool is_detector = module == "lidar_board_detector" || module == "camera_board_detector";
     for (const channel_status_t& channel : status.channels) {
-      const std::int64_t count = channel.num_received + channel.num_lost + channel.num_malformed;
-      if (channel.channel == rig_.channels.lidar_points) sweeps_.Counted(count);
-      if (channel.channel == rig_.channels.camera_image) images_.Counted(count);
+      Sensors& sensors = lidars_.count(channel.channel) != 0 ? lidars_ : cameras_;
+      const auto sensor = sensors.find(channel.channel);
+      if (sensor == sensors.end()) continue;
+      if (is_detector) sensor->second.is_read = true;
+      if (module != "sample_collector") continue;
+      sensor->second.frames.Counted(
+          status.module, channel.num_received + channel.num_lost + channel.num_malformed);
     }
   }
 
-  Rig rig_;
+  std::vector<Rig> pairs_;
   Bus bus_;
-  Frames sweeps_;
-  Frames images_;
+  Sensors lidars_;
+  Sensors cameras_;
+  std::set<std::string> passed_on_;               ///< Channels that nobody answers.
   std::map<std::string, Unreadable> unreadable_;  ///< By channel.
-  bool is_lidar_read_ = false;                    ///< A detector is there.
-  bool is_camera_read_ = false;
 };
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/tool_main.hpp"
+#include "core/sensor_network/sensor_pair.hpp"
 #include "health/session_watch.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/spin.hpp"
@@ -47,21 +48,44 @@ constexpr std::chrono::milliseconds kOnceDuration{2500};
 /// Of looks into the session's folder.
 constexpr std::chrono::milliseconds kLookPeriod{500};
 
+/// @throws std::runtime_error for one that the session has not.
+std::vector<std::string> ModulesOf(const StatusArgs& args, const SessionPlan& plan) {
+  const std::vector<std::string>& all = plan.modules;
+  for (const std::string& module : args.modules) {
+    if (std::find(all.begin(), all.end(), module) != all.end()) continue;
+    std::string names;
+    for (const std::string& each : all) names += (names.empty() ? "" : ", ") + each;
+    throw std::runtime_error("--modules: no module '" + module + "'; there are " + names);
+  }
+  return args.modules;
+}
+
 /// Hears a rig and keeps its page.
 class Listener {
  public:
   explicit Listener(const StatusArgs& args)
       : session_(args.session),
-        rig_(LoadRig(args.rig)),
-        url_(args.lcm_url.value_or(rig_.lcm_url)),
+        pairs_(LoadPairs(args.rig)),
+        plan_(PlanOfRig(args.rig, pairs_)),
+        url_(args.lcm_url.value_or(pairs_.front().lcm_url)),
         bus_(url_),
-        page_(rig_.channels, args.modules, Clock::now()) {
+        page_(plan_, ModulesOf(args, plan_), Clock::now()) {
+    const Channels& channels = pairs_.front().channels;
     bus_.Subscribe<module_status_t>(
-        rig_.channels.module_status, Queue::kEvery, [this](const module_status_t& m) {
+        channels.module_status, Queue::kEvery, [this](const module_status_t& m) {
           page_.Take(m, Clock::now());
         });
-    bus_.Subscribe<event_t>(
-        rig_.channels.calib_event, Queue::kEvery, [this](const event_t& m) { page_.Take(m); });
+    for (const Rig& pair : pairs_) {
+      const std::string name =
+          pairs_.size() == 1 ? "" : PairName(pair.lidar_name, pair.camera_name);
+      bus_.Subscribe<event_t>(pair.channels.calib_event,
+                              Queue::kEvery,
+                              [this, name](const event_t& m) { page_.Take(m, name); });
+    }
+    if (pairs_.size() == 1) return;
+    bus_.Subscribe<rig_extrinsics_t>(channels.rig_extrinsics,
+                                     Queue::kState,
+                                     [this](const rig_extrinsics_t& m) { page_.Take(m); });
   }
 
   void Hear(std::chrono::milliseconds time) {
@@ -73,11 +97,11 @@ class Listener {
   }
 
   bool HaveAllSensorsSent() const {
-    const auto has_come = [this](const std::string& channel) {
-      const Flow flow = page_.health().FlowOf(channel, Clock::now());
+    return std::all_of(plan_.streams.begin(), plan_.streams.end(), [this](const Stream& stream) {
+      if (!stream.input.empty()) return true;  // a detector's
+      const Flow flow = page_.health().FlowOf(stream.channel, Clock::now());
       return flow == Flow::kFlows || flow == Flow::kEnded;
-    };
-    return has_come(rig_.channels.lidar_points) && has_come(rig_.channels.camera_image);
+    });
   }
 
   /// Says that these modules of a session are about to be started.
@@ -88,11 +112,12 @@ class Listener {
     message.state = kToBeStarted;
     for (const std::string& module : modules) {
       message.module = module;
-      bus_.Publish(rig_.channels.module_status, message);
+      bus_.Publish(pairs_.front().channels.module_status, message);
     }
   }
 
   const StatusPage& page() const { return page_; }
+  const SessionPlan& plan() const { return plan_; }
   const std::string& url() const { return url_; }
 
  private:
@@ -102,7 +127,8 @@ class Listener {
   }
 
   std::optional<std::filesystem::path> session_;
-  Rig rig_;
+  std::vector<Rig> pairs_;
+  SessionPlan plan_;
   std::string url_;
   Bus bus_;
   StatusPage page_;
@@ -147,7 +173,11 @@ void RequireNoRival(const Listener& listener,
   for (const std::string& rival :
        listener.page().health().heartbeats().Rivals(Clock::now(), session)) {
     const std::string module = rival.substr(0, rival.find(' '));
-    if (std::find(modules.begin(), modules.end(), module) == modules.end()) continue;
+    const bool is_same = std::any_of(modules.begin(), modules.end(), [&](const std::string& own) {
+      // One of a pair, and one of several such of a rig, hear the same commands.
+      return own == module || own == ModuleOf(module) || ModuleOf(own) == module;
+    });
+    if (!is_same) continue;
     problems += listener.url() + ": " + rival + '\n';
   }
   if (problems.empty()) return;
@@ -162,9 +192,10 @@ void RequireNoRival(const Listener& listener,
 /// sends.
 void TakeNetwork(const StatusArgs& args) {
   const StopOnSignal stop;
-  const std::vector<std::string> modules = args.modules.empty() ? AllModuleNames() : args.modules;
   const std::string session = SessionName(*args.take_for);
   Listener listener(args);
+  const std::vector<std::string> modules =
+      args.modules.empty() ? listener.plan().modules : args.modules;
   listener.Hear(kProbeDuration);
   RequireNoRival(listener, modules, session);
   for (int num_claims = 0; !stop.IsRequested(); ++num_claims) {
@@ -219,8 +250,7 @@ int main(int argc, char** argv) {
          args.modules,
          "Those that should be heard; without it those that the session runs on this host, or "
          "all")
-      ->delimiter(',')
-      ->check(CLI::IsMember(voqcal::AllModuleNames()));
+      ->delimiter(',');
   app.add_option("--session",
                  args.session,
                  "Its folder on this host: tells which programs ended, and of recording and disk");
@@ -231,7 +261,7 @@ int main(int argc, char** argv) {
                "were lost");
   app.add_option("--starting",
                  args.starting_s,
-                 "Wait so many seconds for all modules to run and both sensors to send; print only "
+                 "Wait so many seconds for all modules to run and all sensors to send; print only "
                  "what is wrong then, with status 1");
   app.add_option("--take-for",
                  args.take_for,

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/format.hpp"
+#include "rig_status/table_of_pairs.hpp"
 
 namespace voqcal {
 namespace {
@@ -42,8 +43,8 @@ std::string CountersText(std::vector<counter_t> counters) {
   return text + '\n';
 }
 
-std::string EventText(const event_t& event) {
-  std::string text = "    " + event.kind;
+std::string EventText(const event_t& event, const std::string& of) {
+  std::string text = "    " + (of.empty() ? of : of + ": ") + event.kind;
   if (event.sample_id != 0) text += " sample " + std::to_string(event.sample_id);
   if (!event.reason.empty()) text += ": " + event.reason;
   return text + '\n';
@@ -56,25 +57,26 @@ std::string FaultText(const Fault& fault) {
 
 }  // namespace
 
-StatusPage::StatusPage(const Channels& channels, std::vector<std::string> modules, Time begin)
-    : are_modules_given_(!modules.empty()),
-      modules_(are_modules_given_ ? std::move(modules) : AllModuleNames()),
-      health_(channels, modules_, begin) {}
+StatusPage::StatusPage(const SessionPlan& plan, std::vector<std::string> modules, Time begin)
+    : all_modules_(plan.modules),
+      are_modules_given_(!modules.empty()),
+      modules_(are_modules_given_ ? std::move(modules) : all_modules_),
+      health_(plan, modules_, begin) {}
 
 // tools/up --only starts some here; the others may be another host's, or nobody's.
 void StatusPage::Take(const SessionFacts& facts, Time now) {
   health_.Take(facts, now);
   if (are_modules_given_) return;
   std::vector<std::string> started;
-  for (const std::string& module : AllModuleNames()) {
+  for (const std::string& module : all_modules_) {
     if (facts.programs.count(module) != 0) started.push_back(module);
   }
-  modules_ = started.empty() ? AllModuleNames() : started;
+  modules_ = started.empty() ? all_modules_ : started;
   health_.Expect(modules_);
 }
 
-void StatusPage::Take(const event_t& event) {
-  events_.push_back(event);
+void StatusPage::Take(const event_t& event, const std::string& of) {
+  events_.push_back(EventText(event, of));
   if (events_.size() > kMaxEvents) events_.pop_front();
 }
 
@@ -92,17 +94,19 @@ bool StatusPage::IsAllGood(Time now) const {
 std::string StatusPage::Text(Time now) const {
   std::string text = FaultsText(now, kBriefFaults);
   for (const std::string& module : Listed()) text += LineOf(module, now);
+  if (rig_) text += TableOfPairs(*rig_);
   return text + EventsText(kBriefEvents) + LastLines(now);
 }
 
 std::string StatusPage::Details(Time now) const {
   std::string text = FaultsText(now, health_.Faults(now).size());
   for (const std::string& module : Listed()) text += LineOf(module, now) + DetailsOf(module);
+  if (rig_) text += TableOfPairs(*rig_);
   return text + EventsText(kMaxEvents) + LastLines(now);
 }
 
 std::vector<std::string> StatusPage::Listed() const {
-  std::vector<std::string> listed = are_modules_given_ ? modules_ : AllModuleNames();
+  std::vector<std::string> listed = are_modules_given_ ? modules_ : all_modules_;
   for (const auto& each : health_.heartbeats().heard()) {
     const bool is_new = std::find(listed.begin(), listed.end(), each.first) == listed.end();
     if (is_new) listed.push_back(each.first);
@@ -123,8 +127,14 @@ std::string StatusPage::EventsText(std::size_t max_events) const {
   if (events_.empty()) return {};
   std::string text = "last events\n";
   const std::size_t first = events_.size() - std::min(events_.size(), max_events);
-  for (std::size_t i = first; i < events_.size(); ++i) text += EventText(events_[i]);
+  for (std::size_t i = first; i < events_.size(); ++i) text += events_[i];
   return text;
+}
+
+int StatusPage::NameWidth() const {
+  std::size_t width = 22;
+  for (const std::string& module : all_modules_) width = std::max(width, module.size());
+  return static_cast<int>(width);
 }
 
 std::string StatusPage::LineOf(const std::string& module, Time now) const {
@@ -135,10 +145,10 @@ std::string StatusPage::LineOf(const std::string& module, Time now) const {
     const std::string how = health == ModuleHealth::kEnded ? health_.HowEnded(module)
                             : is_expected                  ? "not heard"
                                                            : "not started here, not heard";
-    return Format("%-22s %s\n", module.c_str(), how.c_str());
+    return Format("%-*s %s\n", NameWidth(), module.c_str(), how.c_str());
   }
   const HeardModule& heard = found->second;
-  std::string text = Format("%-22s %s", module.c_str(), heard.status.state.c_str());
+  std::string text = Format("%-*s %s", NameWidth(), module.c_str(), heard.status.state.c_str());
   if (health == ModuleHealth::kSilent) {
     text += Format("  SILENT for %.0f s", std::chrono::duration<double>(now - heard.at).count());
   }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "health/rig_health.hpp"
 #include "voqcal/event_t.hpp"
+#include "voqcal/rig_extrinsics_t.hpp"
 
 namespace voqcal {
 
@@ -16,18 +18,20 @@ class StatusPage {
 
   /// @param modules  those that should be heard, in the page's order. Others are listed too. Empty:
   /// those of the session that runs on this host; without one, all.
-  StatusPage(const Channels& channels, std::vector<std::string> modules, Time begin);
+  StatusPage(const SessionPlan& plan, std::vector<std::string> modules, Time begin);
 
   void Take(const module_status_t& status, Time now) { health_.Take(status, now); }
   void Take(const SessionFacts& facts, Time now);
-  void Take(const event_t& event);
+  /// @param of  the pair that it is of, where there are several; else empty.
+  void Take(const event_t& event, const std::string& of = {});
+  void Take(const rig_extrinsics_t& message) { rig_ = message; }
 
   /// True if each module that should be heard is well, there is no grave fault and nothing was
   /// lost.
   bool IsAllGood(Time now) const;
 
-  /// What is wrong, then a line for each module, the last events, who is silent and what was lost:
-  /// a terminal of 24 rows holds it.
+  /// What is wrong, then a line for each module, of several sensors the table of their pairs, the
+  /// last events, who is silent and what was lost: of a pair, a terminal of 24 rows holds it.
   std::string Text(Time now) const;
 
   /// The same with all faults, and some lines for each module: rates of each channel, losses, most
@@ -40,14 +44,17 @@ class StatusPage {
   std::vector<std::string> Listed() const;
   std::string FaultsText(Time now, std::size_t max_faults) const;
   std::string EventsText(std::size_t max_events) const;
+  int NameWidth() const;
   std::string LineOf(const std::string& module, Time now) const;
   std::string DetailsOf(const std::string& module) const;
   std::string LastLines(Time now) const;
 
+  std::vector<std::string> all_modules_;  ///< Of the session.
   bool are_modules_given_;
   std::vector<std::string> modules_;  ///< That should be heard.
   RigHealth health_;
-  std::deque<event_t> events_;  ///< The newest last.
+  std::deque<std::string> events_;  ///< As lines, the newest last.
+  std::optional<rig_extrinsics_t> rig_;
 };
 
 }  // namespace voqcal

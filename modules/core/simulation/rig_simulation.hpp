@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,16 @@ struct SimulatedCamera {
   Eigen::Isometry3d T_camera_rig = Eigen::Isometry3d::Identity();  ///< The truth.
   CameraModel model;
 };
+
+/// Of those, the one of that name.
+/// @throws std::invalid_argument if there is none.
+template <typename Sensor>
+std::size_t IndexOfName(const std::vector<Sensor>& sensors, const std::string& name) {
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (sensors[i].name == name) return i;
+  }
+  throw std::invalid_argument("no simulated sensor is named " + name);
+}
 
 /// A simulated rig of any number of sensors in one world.
 struct RigSimulationOptions {

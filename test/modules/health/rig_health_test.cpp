@@ -67,7 +67,7 @@ class RigHealthTest : public ::testing::Test {
     return health_.Faults(At(now_s_ + later_s));
   }
 
-  RigHealth health_{Channels{}, {}, At(0)};
+  RigHealth health_{PlanOfPair({}), {}, At(0)};
   double now_s_ = 0;
   std::int64_t seq_ = 0;
   std::int64_t num_sweeps_ = 0;
@@ -147,7 +147,7 @@ TEST_F(RigHealthTest, ASensorThatNeverSentIsAFaultOnceItsDriverHasStarted) {
 // Drivers on a host of their own: whether their data arrive is for the other host to say.
 TEST_F(RigHealthTest, WithoutAReaderNothingIsSaidOfWhatArrives) {
   const std::vector<std::string> drivers = {"lidar_driver", "camera_driver"};
-  RigHealth health{Channels{}, drivers, At(0)};
+  RigHealth health{PlanOfPair({}), drivers, At(0)};
   for (int i = 0; i < 20; ++i) {
     Beat();
     for (const std::string& driver : drivers) health.Take(Status(driver), At(now_s_));
@@ -160,7 +160,7 @@ TEST_F(RigHealthTest, ASensorThatFellSilentBeforeOneLookedIsNotCalledNew) {
   Beat(6);
   is_lidar_sending_ = false;
   Beat(6);
-  RigHealth late{Channels{}, {}, At(now_s_)};
+  RigHealth late{PlanOfPair({}), {}, At(now_s_)};
   module_status_t status = Status("sample_collector");
   status.channels[0].rate_hz = 0;
   late.Take(status, At(now_s_));

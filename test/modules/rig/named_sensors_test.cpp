@@ -190,7 +190,7 @@ TEST(NamedSensors, AFileWhoseNameHasAHashIsThatFile) {
 TEST(NamedSensors, OneOfSeveralPairsMustBeNamed) {
   EXPECT_EQ(ErrorOf(Truck(), ""),
             "rig.yaml: has lidars front, rear; cameras left, right: name a pair of them, as in "
-            "rig.yaml#front,left (calibrate_rig and check_rig take them all)");
+            "rig.yaml#front,left (tools/up, calibrate_rig and check_rig take them all)");
   EXPECT_THAT(ErrorOf(Truck(), "#rear"), HasSubstr("name a pair of them"));
   EXPECT_EQ(ErrorOf(Truck(), "#front,rear"),
             "rig.yaml: front and rear are both lidars: a pair is a lidar and a camera");
@@ -273,7 +273,7 @@ TEST(NamedSensors, WhatASensorLacksIsToldAtItsEntry) {
       HasSubstr("rig.yaml:8: cameras.left.camra is not a known key: did you mean camera?"));
 }
 
-TEST(NamedSensors, AGuessOfOnePairAndASimulatorOfOnePairAreRefused) {
+TEST(NamedSensors, AGuessOfOnePairIsRefused) {
   const std::string guess =
       ", T_camera_lidar_guess: {quaternion_xyzw: [0, 0, 0, 1], translation_m: [0, 0, 0]}}";
   std::string text = Truck();
@@ -281,10 +281,74 @@ TEST(NamedSensors, AGuessOfOnePairAndASimulatorOfOnePairAreRefused) {
   EXPECT_THAT(ErrorOf(text, "#front,left"),
               HasSubstr("cameras.left.camera.T_camera_lidar_guess is of one lidar: give "
                         "lidars.front.T_rig_lidar_guess and cameras.left.T_rig_camera_guess"));
-  std::string simulated = Truck();
-  simulated.replace(simulated.find("rate_hz: 20"), 11, "source: simulator");
-  EXPECT_THAT(ErrorOf(simulated, "#front,left"),
-              HasSubstr("rig.yaml:6: lidars.front.lidar_driver.source must not be the simulator"));
+}
+
+TEST(NamedSensors, AProgramOfOneSensorIsGivenThatAlone) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Write("rig.yaml", Truck());
+  const Rig lidar = LoadRig(path + "#rear", SensorChoice::kLidar);
+  EXPECT_EQ(lidar.channels.lidar_points, "LIDAR_POINTS_rear");
+  EXPECT_EQ(lidar.lidar_board_detector.max_range_m, 20);
+  EXPECT_EQ(LoadRig(path + "#right", SensorChoice::kCamera).channels.camera_image, "RIGHT");
+  const std::string error = test::ErrorOf([&] { LoadRig(path, SensorChoice::kCamera); });
+  EXPECT_THAT(error, HasSubstr("cameras left, right: name a camera, as in " + path + "#left"));
+}
+
+TEST(NamedSensors, TheFileItselfMayNameThoseThatAreMeant) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Write("rig.yaml", Truck() + "sensors: rear,left,right\n");
+  EXPECT_THAT(SensorsOfRig(path).lidars, ElementsAre("rear"));
+  EXPECT_THAT(PairsOfRig(path), ElementsAre(path + "#rear,left", path + "#rear,right"));
+  EXPECT_THAT(PairsOfRig(path + "#front,left"), ElementsAre(path + "#front,left"));
+}
+
+/// Lines 4 to 6, 7 to 9, and the world in line 10.
+std::string SimulatedTruck() {
+  const std::string place = "{quaternion_xyzw: [0, 0, 0, 1], translation_m: [1, 2, 3]}";
+  const std::string lidar = "lidar_driver: {source: simulator}, simulation: {T_rig_lidar: " + place;
+  const std::string camera =
+      ", camera_driver: {source: simulator}, simulation: {T_rig_camera: " + place + "}}\n";
+  return kHead + std::string("lidars:\n") + "  front: {" + lidar + "}}\n  rear: {" + lidar +
+         ", pattern: raster}}\ncameras:\n  left: {camera: " + kLens + camera +
+         "  right: {camera: " + kSmallLens + camera + "simulation: {num_poses: 7}\n";
+}
+
+TEST(NamedSensors, OneWorldIsSimulatedForAllWhicheverIsRead) {
+  for (const char* place : {"#front,left", "#rear,right"}) {
+    const Rig rig = Load(SimulatedTruck(), place);
+    const RigSimulationOptions& world = rig.simulated_rig;
+    EXPECT_EQ(world.world.num_poses, 7);
+    ASSERT_EQ(world.lidars.size(), 2U);
+    EXPECT_EQ(world.lidars[0].name, "front");
+    EXPECT_EQ(world.lidars[0].scan.pattern, ScanPattern::kVlp16);
+    EXPECT_EQ(world.lidars[1].scan.pattern, ScanPattern::kRaster);
+    ASSERT_EQ(world.cameras.size(), 2U);
+    EXPECT_EQ(world.cameras[0].model.fx_px, 500);
+    EXPECT_EQ(world.cameras[1].model.fx_px, 250);
+    EXPECT_EQ(world.lidars[1].T_rig_lidar.translation(), Eigen::Vector3d(1, 2, 3));
+    EXPECT_EQ(world.cameras[1].T_camera_rig.translation(), Eigen::Vector3d(-1, -2, -3));
+  }
+  EXPECT_TRUE(Load(Truck(), "#front,left").simulated_rig.lidars.empty());
+}
+
+TEST(NamedSensors, TwoWorldsAreRefused) {
+  std::string mixed = SimulatedTruck();
+  mixed.replace(mixed.find("source: simulator"), 17, "source: velodyne_vlp16");
+  EXPECT_EQ(ErrorOf(mixed, "#rear,right"),
+            "rig.yaml:5: lidars.front.lidar_driver.source must be simulator, as that of other "
+            "sensors is: all are of one world, is \"velodyne_vlp16\"");
+  std::string own = SimulatedTruck();
+  own.replace(own.find("pattern: raster"), 15, "seed: 2");
+  EXPECT_THAT(ErrorOf(own, "#front,left"),
+              HasSubstr("rig.yaml:6: lidars.rear.simulation.seed is not a known key"));
+  std::string of_a_pair = SimulatedTruck();
+  of_a_pair.replace(of_a_pair.find("num_poses: 7"), 12, "follows_guidance: true");
+  EXPECT_THAT(ErrorOf(of_a_pair, "#front,left"),
+              HasSubstr("rig.yaml:10: simulation.follows_guidance is of one pair"));
+  std::string nowhere = SimulatedTruck();
+  nowhere.replace(nowhere.find("T_rig_camera"), 12, "T_rig_camra");
+  EXPECT_THAT(ErrorOf(nowhere, "#front,right"),
+              HasSubstr("rig.yaml:8: cameras.left.simulation.T_rig_camera is missing"));
 }
 
 TEST(NamedSensors, EachProblemOfAllPairsIsToldOnce) {

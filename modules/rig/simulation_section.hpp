@@ -1,0 +1,21 @@
+#pragma once
+
+#include "files/yaml_reader.hpp"
+#include "rig/rig.hpp"
+#include "rig/sensor_entries.hpp"
+
+namespace voqcal {
+
+/// The section simulation: of one lidar and one camera all that is simulated, of several the world
+/// that they share.
+void ReadSimulation(YamlSection* top, SimulationOptions* options);
+
+/// Rig::simulated_rig, if the file's sensors are several and the simulator's. All are, or none:
+/// there is one world, with one board. `rig` has its `simulation` and what is said of `pair`
+/// already.
+void ReadSimulatedRig(YamlSection* top,
+                      const PairOfEntries& pair,
+                      SensorEntries* entries,
+                      Rig* rig);
+
+}  // namespace voqcal

@@ -1,0 +1,25 @@
+#include <filesystem>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+#include "messaging/bus.hpp"
+#include "messaging/process.hpp"
+#include "messaging/spin.hpp"
+#include "rig/rig.hpp"
+#include "rig_calibrator/rig_calibrator_node.hpp"
+
+int main(int argc, char** argv) {
+  const voqcal::ProcessInfo info{
+      "rig_calibrator",
+      "Calibrates every pair of a rig of several sensors from its CALIB_SAMPLES, and joins them: "
+      "RIG_EXTRINSICS."};
+  return voqcal::RunProcess(argc, argv, info, [](const voqcal::ProcessArgs& args) {
+    const std::vector<voqcal::Rig> pairs = voqcal::LoadPairs(args.rig_path);
+    voqcal::Bus bus(args.lcm_url.value_or(pairs.front().lcm_url));
+    const std::filesystem::path in_logs = std::filesystem::path("logs") / pairs.front().rig_name;
+    voqcal::RigCalibratorNode node(pairs, &bus, args.session_dir.value_or(in_logs));
+    voqcal::Spin(bus, node, pairs.front().channels.module_status, args);
+    spdlog::info(node.Summary());
+  });
+}

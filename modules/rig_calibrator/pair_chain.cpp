@@ -1,0 +1,46 @@
+#include "rig_calibrator/pair_chain.hpp"
+
+#include <array>
+#include <chrono>
+#include <utility>
+
+namespace voqcal {
+namespace {
+
+void HandleAll(Bus* bus) {
+  while (bus->HandleOnce(std::chrono::milliseconds(0))) {
+  }
+}
+
+}  // namespace
+
+PairChain::PairChain(const Rig& rig,
+                     Bus* bus,
+                     const std::filesystem::path& session_folder,
+                     OnSceneImage on_image)
+    : bus_(*bus),
+      selector_(rig, bus),
+      estimator_(rig, bus),
+      scene_views_(ViewsOfSession(rig.board,
+                                  rig.camera,
+                                  rig.scene_check.view,
+                                  session_folder / kSamplesLogName,
+                                  std::move(on_image))),
+      refiner_(rig, bus, scene_views_),
+      assessor_(rig, bus, session_folder, scene_views_) {}
+
+void PairChain::Run() {
+  HandleAll(&bus_);
+  const std::array<Module*, 4> stages = {&selector_, &estimator_, &refiner_, &assessor_};
+  for (Module* stage : stages) {
+    while (stage->Step()) {
+    }
+    HandleAll(&bus_);
+  }
+}
+
+std::vector<const Module*> PairChain::modules() const {
+  return {&selector_, &estimator_, &refiner_, &assessor_};
+}
+
+}  // namespace voqcal

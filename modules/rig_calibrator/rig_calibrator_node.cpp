@@ -1,0 +1,196 @@
+#include "rig_calibrator/rig_calibrator_node.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <system_error>
+#include <unistd.h>
+
+#include "core/sensor_network/sensor_pair.hpp"
+#include "files/atomic_file.hpp"
+#include "messaging/convert_board.hpp"
+#include "messaging/convert_rig.hpp"
+#include "messaging/encode.hpp"
+#include "messaging/made_from.hpp"
+#include "voqcal/assessment_t.hpp"
+#include "voqcal/extrinsic_averaged_t.hpp"
+#include "voqcal/extrinsic_refined_t.hpp"
+#include "voqcal/voq_sets_t.hpp"
+
+namespace voqcal {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kLookAtWorker{50};
+
+/// While samples are taken, the sensors' processes come first: what they miss is lost. Of this
+/// thread, and those it starts.
+void GiveWay() {
+  constexpr int kNice = 10;
+  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
+}
+
+PairSession EmptySession(const Rig& rig) {
+  PairSession session;
+  session.lidar = rig.lidar_name;
+  session.camera = rig.camera_name;
+  session.lens = rig.camera;
+  session.sampling = rig.sample_collector;
+  TakeResult({}, std::nullopt, "", &session);
+  return session;
+}
+
+template <typename Message>
+void KeepSaid(const std::string& channel,
+              Bus* bus,
+              std::map<std::string, std::vector<std::uint8_t>>* said) {
+  bus->Subscribe<Message>(channel, Queue::kState, [channel, said](const Message& message) {
+    (*said)[channel] = EncodeMessage(message);
+  });
+}
+
+/// A tree that is not of these samples must not be taken for theirs.
+void WriteResult(const std::filesystem::path& file, const RigExtrinsics& rig) {
+  if (rig.network.IsUsable()) return WriteFileAtomically(file, ToYaml(rig));
+  std::error_code ignored;  // it was not there
+  std::filesystem::remove(file, ignored);
+}
+
+}  // namespace
+
+RigCalibratorNode::Chain::Chain(const Rig& rig_in, const std::filesystem::path& folder)
+    : rig(rig_in), bus("memq://"), modules(rig, &bus, folder) {
+  KeepSaid<voq_sets_t>(rig.channels.voq_sets, &bus, &said);
+  KeepSaid<extrinsic_averaged_t>(rig.channels.extrinsic_averaged, &bus, &said);
+  KeepSaid<extrinsic_refined_t>(rig.channels.extrinsic_refined, &bus, &said);
+  KeepSaid<assessment_t>(rig.channels.calib_assessment, &bus, &said);
+}
+
+PairSession RigCalibratorNode::Chain::Calibrate(const samples_t& message,
+                                                const std::vector<BoardSample>& samples) {
+  bus.Publish(rig.channels.calib_samples, message);
+  modules.Run();
+  PairSession session = EmptySession(rig);
+  TakeResult(samples, modules.assessor().result(), modules.assessor().problem(), &session);
+  return session;
+}
+
+RigCalibratorNode::RigCalibratorNode(const std::vector<Rig>& pairs,
+                                     Bus* bus,
+                                     const std::filesystem::path& session_folder)
+    : bus_(*bus),
+      channel_(pairs.front().channels.rig_extrinsics),
+      result_file_(session_folder / kRigResultName),
+      made_from_{pairs.front().rig_name, pairs.front().sha256, VOQCAL_VERSION},
+      pairs_(pairs.size()),
+      working_on_(pairs.size() - 1) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Rig& rig = pairs[i];
+    pairs_[i].name = PairName(rig.lidar_name, rig.camera_name);
+    pairs_[i].chain = std::make_unique<Chain>(rig, session_folder / pairs_[i].name);
+    bus_.Keep(rig.channels.calib_samples, &pairs_[i].newest);
+    sessions_.push_back(EmptySession(rig));
+  }
+  message_ = ToMessage(JoinSessions(sessions_, "", made_from_));
+}
+
+RigCalibratorNode::~RigCalibratorNode() {
+  if (work_.valid()) work_.wait();
+}
+
+std::string RigCalibratorNode::State() const {
+  const auto num_heard = std::count_if(
+      pairs_.begin(), pairs_.end(), [](const Pair& pair) { return pair.newest.has_value(); });
+  if (num_heard == 0) return "waiting for samples";
+  const auto num_done = std::count_if(sessions_.begin(), sessions_.end(), [](const auto& session) {
+    return session.pair.problem.empty();
+  });
+  std::string state = "running: " + std::to_string(num_done) + " of " +
+                      std::to_string(pairs_.size()) + " pairs have an extrinsic";
+  if (work_.valid()) state += ", at work on " + pairs_[working_on_].name;
+  return state;
+}
+
+std::optional<Clock::time_point> RigCalibratorNode::NextStep() const {
+  if (!work_.valid()) return {};
+  return Clock::now() + kLookAtWorker;
+}
+
+bool RigCalibratorNode::Step() {
+  if (work_.valid()) {
+    if (work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    Take(work_.get());
+  }
+  if (const auto next = NextToDo()) Start(*next);
+  return false;
+}
+
+void RigCalibratorNode::Republish() {
+  bus_.Publish(channel_, message_);
+  for (const Pair& pair : pairs_) {
+    for (const auto& [channel, bytes] : pair.said) {
+      bus_.PublishBytes(channel, bytes.data(), bytes.size());
+    }
+  }
+}
+
+bool RigCalibratorNode::IsToDo(const Pair& pair) const {
+  return pair.newest && !(pair.made_of.revision == pair.newest->revision &&
+                          pair.made_of.sha256 == pair.newest->log_sha256);
+}
+
+// Each in its turn: one that changes all the time keeps none waiting.
+std::optional<std::size_t> RigCalibratorNode::NextToDo() const {
+  for (std::size_t i = 1; i <= pairs_.size(); ++i) {
+    const std::size_t pair = (working_on_ + i) % pairs_.size();
+    if (IsToDo(pairs_[pair])) return pair;
+  }
+  return std::nullopt;
+}
+
+void RigCalibratorNode::Start(std::size_t index) {
+  Pair& pair = pairs_[index];
+  std::vector<BoardSample> samples;
+  if (!CanRead([&] { samples = FromMessage(*pair.newest); })) {
+    pair.newest.reset();
+    return;
+  }
+  working_on_ = index;
+  pair.made_of = {pair.newest->utime, pair.newest->revision, pair.newest->log_sha256};
+  work_ = std::async(
+      std::launch::async,
+      [this,
+       index,
+       chain = pair.chain.get(),
+       message = *pair.newest,
+       samples = std::move(samples),
+       sessions = sessions_]() mutable {
+        if (message.is_finished == 0) GiveWay();
+        sessions[index] = chain->Calibrate(message, samples);
+        Outcome outcome = {sessions[index], chain->said, JoinSessions(sessions, "", made_from_)};
+        WriteResult(result_file_, outcome.rig);
+        return outcome;
+      });
+}
+
+void RigCalibratorNode::Take(const Outcome& outcome) {
+  sessions_[working_on_] = outcome.session;
+  pairs_[working_on_].said = outcome.said;
+  Count(outcome.session.pair.problem.empty() ? "calibrations" : "without a result");
+  const std::int64_t revision = message_.revision + 1;
+  message_ = ToMessage(outcome.rig);
+  message_.revision = revision;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {  // which come before those of two cameras
+    const MadeOf& made_of = pairs_[i].made_of;
+    message_.utime = std::max(message_.utime, made_of.utime);
+    message_.pairs[i].samples_revision = made_of.revision;
+    message_.pairs[i].samples_sha256 = made_of.sha256;
+  }
+  Republish();
+}
+
+}  // namespace voqcal

@@ -1,0 +1,143 @@
+// A rig of several sensors, live: two simulated lidars and three cameras in one world.
+
+#include <algorithm>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "files/atomic_file.hpp"
+#include "support/sanitizers.hpp"
+#include "support/temporary_folder.hpp"
+#include "system/system_test.hpp"
+
+namespace voqcal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string ReplacedAll(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+/// config/rigs/simulated_several.yaml made short and small: 12 near stops, images of 640 x 400,
+/// lidars of few points.
+std::string SmallRigText() {
+  std::string text =
+      ReadWholeFile(std::string(VOQCAL_SOURCE_DIR) + "/config/rigs/simulated_several.yaml");
+  const std::pair<const char*, const char*> changes[] = {
+      {"width_px: 1280", "width_px: 640"},
+      {"height_px: 800", "height_px: 400"},
+      {"cx_px: 641.5", "cx_px: 320.5"},
+      {"cy_px: 396.0", "cy_px: 197.75"},
+      {"fx_px: 750.0", "fx_px: 375.0"},
+      {"fy_px: 751.5", "fy_px: 375.75"},
+      {"fx_px: 800.0", "fx_px: 400.0"},
+      {"fy_px: 801.5", "fy_px: 400.75"},
+      {"fx_px: 780.0", "fx_px: 390.0"},
+      {"fy_px: 781.5", "fy_px: 390.75"},
+      {"pattern: raster", "pattern: vlp16"},
+      {"num_poses: 40", "num_poses: 12"},
+      {"hold_s: 1.5", "hold_s: 0.8"},
+      {"move_s: 0.5", "move_s: 0.4"},
+      {"max_distance_m: 3.5", "max_distance_m: 2.5"},
+      {"239.255.76.67:7768", "239.255.76.67:7793"}};
+  for (const auto& [from, to] : changes) text = ReplacedAll(text, from, to);
+  return text;
+}
+
+class LiveRig : public ::testing::Test {
+ protected:
+  ~LiveRig() override { Down(); }
+
+  test::Outcome Up(const std::string& rig, const std::vector<std::string>& flags = {}) const {
+    std::vector<std::string> args = {test::Tool("up"), rig, "--session", session_};
+    args.insert(args.end(), flags.begin(), flags.end());
+    return test::Run(args);
+  }
+  test::Outcome Down() const { return test::Run({test::Tool("down"), "--session", session_}); }
+
+  test::TemporaryFolder folder_;
+  std::string rig_ = folder_.Write("rig.yaml", SmallRigText());
+  std::string session_ = folder_.path() / "session";
+};
+
+TEST_F(LiveRig, RunsTheSensorsThatAreNamedAndThoseOfThemThatAreWanted) {
+  const std::string some = rig_ + "#roof,front,rear";
+  const test::Outcome up =
+      Up(some, {"--only", "sample_collector,rig_calibrator,camera_board_detector_rear"});
+  ASSERT_EQ(up.status, 0) << up.err;
+  EXPECT_THAT(up.out, HasSubstr("running: 4 programs"));
+  EXPECT_THAT(ReadWholeFile(session_ + "/rig.yaml"), HasSubstr("\nsensors: roof,front,rear\n"));
+  EXPECT_THAT(test::NamesIn(session_),
+              AllOf(Contains("roof_front"), Contains("roof_rear"), Not(Contains("roof_left"))));
+
+  const test::Outcome status = test::Run({test::Tool("status"),
+                                          session_ + "/rig.yaml",
+                                          "--once",
+                                          "--modules",
+                                          "sample_collector_roof_rear,rig_calibrator"});
+  EXPECT_EQ(status.status, 0) << status.out << status.err;
+  EXPECT_THAT(status.out,
+              AllOf(HasSubstr("camera_board_detector_rear "),
+                    HasSubstr("roof_rear        0"),
+                    HasSubstr("no pair joins these parts of the rig: roof | front | rear")));
+  // A pair of them would hear the same commands.
+  const test::Outcome pair = test::Run({test::Tool("up"),
+                                        rig_ + "#roof,front",
+                                        "--session",
+                                        session_ + "2",
+                                        "--only",
+                                        "sample_collector"});
+  EXPECT_EQ(pair.status, 1);
+  EXPECT_THAT(pair.err, HasSubstr("sample_collector_roof_"));
+  EXPECT_EQ(Down().status, 0);
+}
+
+TEST_F(LiveRig, WhatCannotBeEndsInALine) {
+  const auto error_of = [this](const std::string& rig, const std::vector<std::string>& flags = {}) {
+    const test::Outcome up = Up(rig, flags);
+    EXPECT_NE(up.status, 0);
+    EXPECT_EQ(std::count(up.err.begin(), up.err.end(), '\n'), 1) << up.err;
+    return up.err;
+  };
+  EXPECT_THAT(error_of(rig_ + "#roof,fornt,left"),
+              HasSubstr("has no sensor 'fornt' (did you mean front?)"));
+  EXPECT_THAT(error_of(rig_, {"--only", "lidar_driver_rof"}),
+              HasSubstr("no module 'lidar_driver_rof'"));
+  const std::string text = SmallRigText();
+  const std::string one_channel = folder_.Write(
+      "one_channel.yaml",
+      test::Replaced(
+          text, "  left:\n", "  left:\n    channels: {camera_image: CAMERA_IMAGE_front}\n"));
+  EXPECT_THAT(error_of(one_channel), HasSubstr("cameras.left.channels.camera_image must differ"));
+  const std::string two_worlds =
+      folder_.Write("two_worlds.yaml", test::Replaced(text, "pattern: vlp16", "seed: 2"));
+  EXPECT_THAT(error_of(two_worlds), HasSubstr("lidars.bumper.simulation.seed is not a known key"));
+  EXPECT_THAT(test::NamesIn(folder_.path()), Not(Contains("session")));
+}
+
+// Of an undisturbed session, and of one in which three modules are killed. More of them:
+// test/system/kill_test.py by hand.
+TEST_F(LiveRig, EndsWithTheBytesThatItsRecordingGives) {
+  VOQCAL_LEAVE_TO_RELEASE();
+  const test::Outcome outcome =
+      test::Run({std::string(VOQCAL_SOURCE_DIR) + "/test/system/kill_test.py",
+                 rig_,
+                 "--out",
+                 folder_.path() / "kills",
+                 "--kills",
+                 "1",
+                 "--at-once",
+                 "3"});
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
+}  // namespace
+}  // namespace voqcal

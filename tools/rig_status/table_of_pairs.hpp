@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "voqcal/rig_extrinsics_t.hpp"
+
+namespace voqcal {
+
+/// A line for each pair of a rig: its samples, how well the tree knows it, its verdict or why there
+/// is none; then the tree's verdict, the weakest pair and what to do next.
+std::string TableOfPairs(const rig_extrinsics_t& rig);
+
+}  // namespace voqcal

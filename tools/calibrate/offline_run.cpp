@@ -34,12 +34,11 @@ OfflineRun::OfflineRun(const Rig& rig,
       camera_detector_(DetectorUnless<CameraBoardDetectorNode>(boards.camera, rig, &bus_)),
       collector_(rig, &bus_, session_folder),
       grounds_(rig.camera),
-      chain_(rig,
-             &bus_,
-             session_folder,
-             [this](const BoardSample& sample, const cv::Mat& image) {
-               grounds_.Add(sample, image);
-             }),
+      chain_(
+          rig,
+          &bus_,
+          session_folder,
+          [this](const BoardSample& sample, const cv::Mat& image) { grounds_.Add(sample, image); }),
       averaged_{} {
   bus_.Subscribe<extrinsic_averaged_t>(channels_.extrinsic_averaged,
                                        Queue::kState,

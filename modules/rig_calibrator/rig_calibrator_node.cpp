@@ -4,10 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
 #include <system_error>
-#include <unistd.h>
 
 #include "core/sensor_network/sensor_pair.hpp"
 #include "files/atomic_file.hpp"
@@ -26,13 +23,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLookAtWorker{50};
-
-/// While samples are taken, the sensors' processes come first: what they miss is lost. Of this
-/// thread, and those it starts.
-void GiveWay() {
-  constexpr int kNice = 10;
-  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
-}
 
 PairSession EmptySession(const Rig& rig) {
   PairSession session;

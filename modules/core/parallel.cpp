@@ -24,8 +24,8 @@ void Helpers::SetNum(std::size_t num) {
 }
 
 void Helpers::Share(const std::function<void()>& work, std::size_t most) {
-  std::list<Shares> own = {{&work, std::min(most, num())}};
-  const auto shares = own.begin();
+  std::list<SharedWork> own = {{&work, std::min(most, num())}};
+  const auto shared = own.begin();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     all_.splice(all_.end(), own);
@@ -37,9 +37,9 @@ void Helpers::Share(const std::function<void()>& work, std::size_t most) {
   }
   work();
   std::unique_lock<std::mutex> lock(mutex_);
-  shares->num_wanted = 0;
-  work_has_ended_.wait(lock, [&] { return shares->num_at_work == 0; });
-  all_.erase(shares);
+  shared->num_wanted = 0;
+  work_has_ended_.wait(lock, [&] { return shared->num_at_work == 0; });
+  all_.erase(shared);
 }
 
 void Helpers::Stop() {
@@ -56,20 +56,20 @@ void Helpers::Help() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (true) {
     there_is_work_.wait(lock, [this] { return is_at_end_ || FirstWanted() != nullptr; });
-    Shares* shares = FirstWanted();
-    if (shares == nullptr) return;
-    --shares->num_wanted;
-    ++shares->num_at_work;
+    SharedWork* shared = FirstWanted();
+    if (shared == nullptr) return;
+    --shared->num_wanted;
+    ++shared->num_at_work;
     lock.unlock();
-    (*shares->work)();
+    (*shared->work)();
     lock.lock();
-    if (--shares->num_at_work == 0) work_has_ended_.notify_all();
+    if (--shared->num_at_work == 0) work_has_ended_.notify_all();
   }
 }
 
-Helpers::Shares* Helpers::FirstWanted() {
-  for (Shares& shares : all_) {
-    if (shares.num_wanted > 0) return &shares;
+Helpers::SharedWork* Helpers::FirstWanted() {
+  for (SharedWork& shared : all_) {
+    if (shared.num_wanted > 0) return &shared;
   }
   return nullptr;
 }

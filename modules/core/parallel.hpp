@@ -15,7 +15,8 @@
 namespace voqcal {
 
 /// Threads that help whoever shares work out. Work within shared work finds those that are idle: no
-/// more are at work at once than there are, and the one that asked first.
+/// more are at work at once than there are, and the one that asked first. A process that forks must
+/// end its child by exec or _exit: these threads are not in it.
 class Helpers {
  public:
   /// Of the process: with the thread that asks, one for each core.
@@ -36,7 +37,7 @@ class Helpers {
   void Share(const std::function<void()>& work, std::size_t most);
 
  private:
-  struct Shares {
+  struct SharedWork {
     const std::function<void()>* work;
     std::size_t num_wanted;
     std::size_t num_at_work = 0;
@@ -44,19 +45,19 @@ class Helpers {
 
   void Stop();
   void Help();
-  Shares* FirstWanted();
+  SharedWork* FirstWanted();
 
   std::vector<std::thread> threads_;
   std::mutex mutex_;  // of what follows
   std::condition_variable there_is_work_;
   std::condition_variable work_has_ended_;
-  std::list<Shares> all_;
+  std::list<SharedWork> all_;
   bool is_at_end_ = false;
 };
 
-/// Calls `work(i)` for each i below `num`, on as many threads as the machine has cores, but never
-/// more than `most_at_once`. What each call gives must depend on i alone and be stored by i: the
-/// result is then the same each time.
+/// Calls `work(i)` for each i below `num`, here and on those of the Shared() helpers that are idle,
+/// but never on more than `most_at_once` threads. What each call gives must depend on i alone and
+/// be stored by i: the result is then the same each time.
 /// @throws what the first call (by i) that throws does, after all have ended.
 template <typename Work>
 void ParallelFor(std::size_t num,

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "core/parallel.hpp"
 #include "messaging/log.hpp"
@@ -60,35 +60,54 @@ class SessionSceneReader {
 /// matter which comes first. Of a log that is damaged somewhere, the scenes before that are done.
 /// Scenes of the same sample and time, as logs have that were joined, count once: the first.
 /// @param is_wanted  is called by one thread at a time, while `work` goes on.
-/// @throws as SessionSceneReader, and what `work` throws.
+/// @throws as SessionSceneReader; what `work` throws of the first scene that it does of, once all
+///     that were begun have ended: none is begun after it.
 template <typename IsWanted, typename Work>
 void ForEachScene(const std::filesystem::path& samples_log,
                   const IsWanted& is_wanted,
                   const Work& work) {
-  std::mutex reading;
+  struct Numbered {
+    std::size_t number;
+    SessionScene scene;
+  };
+  std::mutex reading;  // of all that follows
   SessionSceneReader reader(samples_log);
   std::set<std::pair<std::int64_t, std::int64_t>> taken;  // id, utime
   bool is_at_end = false;
-  std::exception_ptr damage;
-  const auto next = [&]() -> std::optional<SessionScene> {
+  std::exception_ptr error;
+  std::size_t number_of_error = std::numeric_limits<std::size_t>::max();
+  const auto keep_error = [&](std::size_t number) {
+    is_at_end = true;
+    if (number >= number_of_error) return;
+    number_of_error = number;
+    error = std::current_exception();
+  };
+  const auto next = [&]() -> std::optional<Numbered> {
     const std::lock_guard<std::mutex> lock(reading);
     try {
       while (!is_at_end) {
         std::optional<SessionScene> scene = reader.Next();
         is_at_end = !scene;
         if (!scene || !is_wanted(*scene)) continue;
-        if (taken.emplace(scene->sample_id, scene->sweep.utime).second) return scene;
+        if (!taken.emplace(scene->sample_id, scene->sweep.utime).second) continue;
+        return Numbered{taken.size(), std::move(*scene)};
       }
     } catch (...) {
-      is_at_end = true;
-      damage = std::current_exception();
+      keep_error(taken.size() + 1);
     }
     return std::nullopt;
   };
   ParallelFor(1 + Helpers::Shared().num(), [&](std::size_t) {
-    while (const std::optional<SessionScene> scene = next()) work(*scene);
+    while (const std::optional<Numbered> each = next()) {
+      try {
+        work(each->scene);
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(reading);
+        keep_error(each->number);
+      }
+    }
   });
-  if (damage) std::rethrow_exception(damage);
+  if (error) std::rethrow_exception(error);
 }
 
 }  // namespace voqcal

@@ -33,7 +33,7 @@ std::vector<SceneView> SessionViews::Of(const std::vector<const BoardSample*>& s
   }
   std::map<Key, const BoardSample*> missing = wanted;
   for (const auto& [key, view] : views_) missing.erase(key);
-  if (std::filesystem::exists(samples_log_)) Read(missing);
+  if (!missing.empty() && std::filesystem::exists(samples_log_)) Read(missing);
   std::vector<SceneView> views;
   for (const auto& [key, view] : views_) views.push_back(view);
   return views;

@@ -19,7 +19,8 @@
 
 namespace voqcal {
 
-/// Is told of a sample's decoded image, by several threads at once.
+/// Is told of a sample's decoded image, by several threads at once. Must not throw: what it makes
+/// of the image is no part of the scene.
 using OnSceneImage = std::function<void(const BoardSample& sample, const cv::Mat& image)>;
 
 /// The edges of each sample's scene, taken from the session's samples.lcm: one sweep and one image

@@ -1,6 +1,5 @@
 #include "core/parallel.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <stdexcept>
 #include <string>
@@ -35,25 +34,43 @@ TEST(ParallelFor, WorksWithinWork) {
   for (const std::vector<int>& row : num_done) EXPECT_THAT(row, Each(1));
 }
 
-TEST(ParallelFor, NeverDoesMoreAtOnceThanToldOrThereAreThreads) {
+TEST(ParallelFor, IsHelped) {
+  const test::WithHelpers helpers(1);
+  std::atomic<int> num_there{0};
+  ParallelFor(2, [&](std::size_t) {
+    ++num_there;
+    while (num_there < 2) std::this_thread::yield();  // for ever, if one comes after the other
+  });
+  EXPECT_EQ(num_there, 2);
+}
+
+TEST(ParallelFor, NeverDoesMoreAtOnceThanTold) {
   const test::WithHelpers helpers(3);
-  for (const std::size_t most_at_once : {2, 100}) {
-    std::atomic<std::size_t> num_now{0};
-    std::atomic<bool> are_too_many{false};
-    const auto work = [&] {
-      if (++num_now > std::min<std::size_t>(most_at_once, 4)) are_too_many = true;
+  std::atomic<int> num_now{0};
+  std::atomic<bool> are_too_many{false};
+  ParallelFor(
+      200,
+      [&](std::size_t) {
+        if (++num_now > 2) are_too_many = true;
+        std::this_thread::yield();
+        --num_now;
+      },
+      2);
+  EXPECT_FALSE(are_too_many);
+}
+
+TEST(ParallelFor, WithinWorkDoesNoMoreAtOnceThanThereAreThreads) {
+  const test::WithHelpers helpers(3);
+  std::atomic<int> num_now{0};
+  std::atomic<bool> are_too_many{false};
+  ParallelFor(30, [&](std::size_t) {
+    ParallelFor(10, [&](std::size_t) {
+      if (++num_now > 4) are_too_many = true;
       std::this_thread::yield();
       --num_now;
-    };
-    ParallelFor(
-        30,
-        [&](std::size_t) {
-          ParallelFor(
-              10, [&](std::size_t) { work(); }, 1);
-        },
-        most_at_once);
-    EXPECT_FALSE(are_too_many) << most_at_once;
-  }
+    });
+  });
+  EXPECT_FALSE(are_too_many);
 }
 
 TEST(ParallelFor, ThrowsWhatTheFirstThrowsAfterAllHaveEnded) {

@@ -17,12 +17,18 @@ int ToInt(double coordinate) {
 cv::Mat Cut(const cv::Mat& image, const PictureView& view) {
   cv::Mat cut;
   const int method = view.scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC;
-  cv::resize(image(view.part_px), cut, {}, view.scale, view.scale, method);
+  const auto scaled = [&view](int px) { return std::max(1, ToInt(view.scale * px)); };
+  cv::resize(image(view.part_px),
+             cut,
+             {scaled(view.part_px.width), scaled(view.part_px.height)},
+             0,
+             0,
+             method);
   if (cut.channels() == 1) cv::cvtColor(cut, cut, cv::COLOR_GRAY2BGR);
   return cut;
 }
 
-/// The board with a margin, as large in the picture as `size_px` allows.
+/// The board with a margin.
 PictureView NearView(const std::vector<Eigen::Vector2d>& outline_px, const cv::Size& image_size) {
   constexpr double kMargin = 0.25;  // of the board's size, on each side
   constexpr double kSizePx = 400;

@@ -65,7 +65,7 @@ std::string MethodLines(const CalibrationResult& result) {
   if (turn_deg.norm() > kLeastDeg) {
     text += Format(
         "chessboards  turned by %+.2f +- %.2f and %+.2f +- %.2f deg about the camera's x and y "
-        "against the rays to them, as a principal point that is off does: taken out\n",
+        "against the rays to them, as by a principal point or scan lines that are off: taken out\n",
         turn_deg.x(),
         sigma_deg.x(),
         turn_deg.y(),

@@ -127,7 +127,7 @@ cv::Mat BoardWith(const PictureGrounds& grounds,
   return picture;
 }
 
-// Not synced: it is there until the page is made of it.
+// Not synced: the folder is a scratch one, and goes once the page is made.
 void WritePicture(const cv::Mat& picture, const std::filesystem::path& path) {
   constexpr int kQuality = 72;
   const std::vector<std::uint8_t> jpeg = EncodeJpeg(picture, kQuality);
@@ -135,8 +135,10 @@ void WritePicture(const cv::Mat& picture, const std::filesystem::path& path) {
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
   file.close();
-  if (!file)
-    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
+  if (!file) {
+    const std::string cause = errno == 0 ? "" : std::string(": ") + std::strerror(errno);
+    throw std::runtime_error(path.string() + ": cannot be written" + cause);
+  }
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 namespace voqcal {
 namespace {
 
-constexpr int kLeastForModels = 5;  // of 6 residuals each, for 6 + 2 parameters
+constexpr int kLeastForModels = 5;  // of 6 residuals each, for 6 + 3 known and a group of 1 or 2
 
 // Takes the samples that stand out from the equations, the worst first: each one pulls the fit.
 void SetOutliersAside(const std::vector<FaultParameter>& known,

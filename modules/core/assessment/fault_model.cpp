@@ -10,6 +10,7 @@
 #include "core/board/half_turn.hpp"
 #include "core/board/what_was_measured.hpp"
 #include "core/estimation/left_perturbation.hpp"
+#include "core/estimation/sighting_errors.hpp"
 #include "core/geometry/rigid.hpp"
 
 namespace voqcal {
@@ -24,6 +25,13 @@ constexpr double kStep = 1e-5;  // of all numeric derivatives: rad, m, and share
 constexpr NoiseLevels kLeastNoise = {2e-4, 5e-4, 5e-4, 5e-4, 0.02};
 constexpr NoiseLevels kFirstNoise = {3e-3, 1e-2, 1e-2, 5e-3, 0.3};
 constexpr std::array<int, kCorner> kRowsOfKind = {2, 1, 2, 1};
+// 1 sigma of the parameters that have a prior, the same as the result's: the others are free.
+struct Prior {
+  FaultParameter fault;
+  double sigma;
+};
+constexpr std::array<Prior, 2> kPriors = {Prior{kChessboardTurnX, kPriorChessboardTurnRad},
+                                          Prior{kChessboardTurnY, kPriorChessboardTurnRad}};
 // Neighbouring corners err alike, by what no lens model has: so many tell as much as all of them.
 constexpr double kIndependentCorners = 0.1;
 
@@ -238,6 +246,13 @@ NormalEquations SumOf(const std::vector<FaultEquation>& equations,
   const auto n = static_cast<Eigen::Index>(columns.size());
   NormalEquations sum{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   for (const FaultEquation& equation : equations) Add(equation, columns, noise, 1, &sum);
+  for (const Prior& prior : kPriors) {
+    const auto column =
+        std::find(columns.begin(), columns.end(), kNumExtrinsicParameters + prior.fault);
+    if (column == columns.end()) continue;
+    const Eigen::Index i = column - columns.begin();
+    sum.H(i, i) += 1 / (prior.sigma * prior.sigma);
+  }
   return sum;
 }
 
@@ -367,6 +382,9 @@ FaultFit FitFaults(const std::vector<FaultEquation>& equations,
     fit.covariance = Scattered(*inverse, columns);
     fit.squares = SquaresOf(equations, fit.value);
     fit.log_likelihood = 0;
+    for (const Prior& prior : kPriors) {
+      fit.log_likelihood -= 0.5 * std::pow(fit.Value(prior.fault) / prior.sigma, 2);
+    }
     for (std::size_t kind = 0; kind < fit.noise.size(); ++kind) {
       const double num_rows = NumRows(equations, kind);
       if (num_rows == 0) continue;

@@ -25,7 +25,8 @@ enum FaultParameter : int {
   kPatternX,     ///< The true pattern lies so many metres farther along the board's x...
   kPatternY,     ///< ...and y.
   kRangeOffset,  ///< The lidar's ranges are too long by so many metres.
-  /// All chessboards truly face so many radians farther than they are seen, about the camera's x...
+  /// All chessboards truly face so many radians farther than they are seen, about the camera's x
+  /// (minus SharedErrors' chessboard_turn_x_rad)...
   kChessboardTurnX,
   kChessboardTurnY,  ///< ...and y.
   kNumFaultParameters
@@ -72,7 +73,7 @@ ResidualKind KindOfRow(int row);
 
 /// @param T_camera_lidar  near the truth: residuals are taken to be linear about it.
 /// @return one equation a sample. Without corner pixels (features read from a table) the columns of
-///     the camera's faults are zero: nothing can be said of them.
+///     the faults of camera and pattern are zero: nothing can be said of them.
 std::vector<FaultEquation> MakeFaultEquations(const std::vector<const BoardSample*>& samples,
                                               const BoardSpec& board,
                                               const CameraModel& camera,
@@ -103,7 +104,8 @@ CameraModel CameraWith(const FaultFit& fit, const CameraModel& given);
 BoardSpec BoardWith(const FaultFit& fit, const BoardSpec& given);
 
 /// Least squares with noise levels of their own for each kind of residual, estimated together with
-/// the parameters, which are the extrinsic and `faults`.
+/// the parameters, which are the extrinsic and `faults`. The chessboards' turn has the prior that
+/// the result gives it.
 FaultFit FitFaults(const std::vector<FaultEquation>& equations,
                    const std::vector<FaultParameter>& faults);
 

@@ -104,15 +104,16 @@ bool IsWorthAWord(const Candidate& candidate,
   // poses held out must fall, and for so many of them that it is no chance.
   constexpr double kLeastFall = 0.1;
   constexpr double kLeastGainSigmas = 2.5;
-  // Gains of normals and corners need less of a word of the centres: 60 with a fall of a tenth.
-  constexpr double kPlain = 0.6;
+  // ...or normals and corners gain the more, the less it falls: six times the least that is worth a
+  // word with a fall of a tenth.
+  constexpr double kLeastGainByFall = 0.6;
   const FaultFit& fit = candidate.fit;
   const double fall = 1 - fit.mean_held_out_error_m / before.mean_held_out_error_m;
   return candidate.gain > options.min_log_likelihood_gain &&
          candidate.suspect.Length(fit) > 3 * candidate.suspect.LengthError(fit) &&
          fall > kLeastFall &&
          (GainSigmas(before, fit) > kLeastGainSigmas ||
-          fall * candidate.gain > kPlain * options.min_log_likelihood_gain) &&
+          fall * candidate.gain > kLeastGainByFall * options.min_log_likelihood_gain) &&
          (HalvesTheError(before, fit) ||
           IntervalsOf(MoveBetween(before, fit), covariance) > options.min_moved_intervals);
 }
@@ -124,7 +125,7 @@ int DecimalsOf(double value) {
 
 // A fault as large as the samples allow.
 struct Hidden {
-  std::string cause;
+  std::string group;
   double intervals = 0;  // of the result, that it would move it by
   std::string text;
 };
@@ -139,7 +140,7 @@ Hidden WhatCouldHide(const Candidate& candidate, const Matrix6d& covariance) {
     const Vector6d move = size * candidate.fit.ExtrinsicBy(fault);
     const double intervals = IntervalsOf(move, covariance);
     if (!(intervals > std::max(worst.intervals, 1.0))) continue;
-    worst = {suspect.cause,
+    worst = {suspect.group,
              intervals,
              Format("%s: an error of %.*f%s could hide in these samples; ",
                     suspect.cause.c_str(),
@@ -151,8 +152,14 @@ Hidden WhatCouldHide(const Candidate& candidate, const Matrix6d& covariance) {
   return worst;
 }
 
-// Of each cause the worst that could: coefficients of one lens, and the focal lengths across and
-// down, trade with each other.
+void SayWhatIsOpen(const std::vector<std::string>& groups, Diagnosis* diagnosis) {
+  if (groups.empty()) return;
+  std::string text;
+  for (const std::string& group : groups) text += (text.empty() ? "" : ", ") + group;
+  diagnosis->not_judged.push_back(text + ": the samples leave it open");
+}
+
+// Of each group the worst that could.
 void SayWhatCouldHide(const std::vector<Candidate>& candidates,
                       const Matrix6d& covariance,
                       Diagnosis* diagnosis) {
@@ -160,11 +167,13 @@ void SayWhatCouldHide(const std::vector<Candidate>& candidates,
   for (const Candidate& candidate : candidates) {
     const Hidden hidden = WhatCouldHide(candidate, covariance);
     if (hidden.text.empty()) continue;
-    const bool is_of_last = !worst.empty() && hidden.cause.rfind(worst.back().cause, 0) == 0;
-    if (!is_of_last) {
+    const auto of_group = std::find_if(worst.begin(), worst.end(), [&hidden](const Hidden& each) {
+      return each.group == hidden.group;
+    });
+    if (of_group == worst.end()) {
       worst.push_back(hidden);
-    } else if (hidden.intervals > worst.back().intervals) {
-      worst.back() = hidden;
+    } else if (hidden.intervals > of_group->intervals) {
+      *of_group = hidden;
     }
   }
   for (const Hidden& hidden : worst) diagnosis->not_judged.push_back(hidden.text);
@@ -187,10 +196,9 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
                    suspects.end());
   };
   for (const FaultParameter fault : known) remove_suspects({fault});
-  std::string open_causes;
-  std::string last_open_cause;
   while (now.is_usable && !suspects.empty()) {
     std::vector<Candidate> candidates;
+    std::vector<std::string> open_groups;
     for (const Suspect& suspect : suspects) {
       std::vector<FaultParameter> faults = fitted;
       faults.insert(faults.end(), suspect.faults.begin(), suspect.faults.end());
@@ -198,29 +206,28 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
       if (candidate.fit.is_usable) {
         candidate.gain = candidate.fit.log_likelihood - now.log_likelihood;
         candidates.push_back(candidate);
-      } else if (fitted == known) {
-        // The coefficients of a lens are suspects of one name.
-        if (last_open_cause == suspect.cause) continue;
-        open_causes += (open_causes.empty() ? "" : ", ") + suspect.cause;
-        last_open_cause = suspect.cause;
+      } else if (std::find(open_groups.begin(), open_groups.end(), suspect.group) ==
+                 open_groups.end()) {
+        open_groups.push_back(suspect.group);
       }
-    }
-    if (fitted == known) {
-      if (!open_causes.empty()) {
-        diagnosis->not_judged.push_back(open_causes + ": the samples leave it open");
-      }
-      SayWhatCouldHide(candidates, result.covariance, diagnosis);
     }
     const Candidate* best = nullptr;
     for (const Candidate& candidate : candidates) {
       if (!IsWorthAWord(candidate, now, result.covariance, options)) continue;
       if (best == nullptr || candidate.gain > best->gain) best = &candidate;
     }
-    if (best == nullptr) return;
+    if (best == nullptr) {
+      SayWhatIsOpen(open_groups, diagnosis);
+      SayWhatCouldHide(candidates, result.covariance, diagnosis);
+      return;
+    }
     diagnosis->findings.push_back(MakeFinding(*best, now, result));
     now = best->fit;
     fitted.insert(fitted.end(), best->suspect.faults.begin(), best->suspect.faults.end());
     remove_suspects(std::vector<FaultParameter>(best->suspect.faults));
+  }
+  if (!now.is_usable) {
+    diagnosis->not_judged.push_back("what was given: the samples leave the extrinsic itself open");
   }
 }
 

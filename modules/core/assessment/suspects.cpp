@@ -29,7 +29,7 @@ Suspect FocalLength(const char* cause,
     if (fault == kFocalXScale) return fx;
     return fault == kFocalYScale ? "camera." + fy : fx + ", " + fy;
   };
-  return {cause, {fault}, false, 100, "%", claim, remedy};
+  return {cause, "focal length", {fault}, false, 100, "%", claim, remedy};
 }
 
 Suspect PrincipalPoint(const CameraModel& camera) {
@@ -44,7 +44,14 @@ Suspect PrincipalPoint(const CameraModel& camera) {
     const CameraModel mended = CameraWith(fit, camera);
     return Format("camera.cx_px: %.1f, cy_px: %.1f", mended.cx_px, mended.cy_px);
   };
-  return {"principal point", {kPrincipalX, kPrincipalY}, true, 1, "px", claim, remedy};
+  return {"principal point",
+          "principal point",
+          {kPrincipalX, kPrincipalY},
+          true,
+          1,
+          "px",
+          claim,
+          remedy};
 }
 
 Suspect Coefficient(int i, const CameraModel& camera) {
@@ -58,7 +65,7 @@ Suspect Coefficient(int i, const CameraModel& camera) {
                   given);
   };
   const Say remedy = [=](const FaultFit& fit) { return DistortionLine(CameraWith(fit, camera)); };
-  return {"distortion", {fault}, false, 1, "", claim, remedy};
+  return {"distortion", "distortion", {fault}, false, 1, "", claim, remedy};
 }
 
 Suspect Squares(const BoardSpec& board) {
@@ -71,7 +78,7 @@ Suspect Squares(const BoardSpec& board) {
   const Say remedy = [board](const FaultFit& fit) {
     return Format("board.square_m: %.5f", BoardWith(fit, board).square_m);
   };
-  return {"board's squares", {kSquareScale}, false, 100, "%", claim, remedy};
+  return {"board's squares", "board's squares", {kSquareScale}, false, 100, "%", claim, remedy};
 }
 
 Suspect PatternOffset(const BoardSpec& board) {
@@ -89,7 +96,14 @@ Suspect PatternOffset(const BoardSpec& board) {
                   mended.pattern_offset_x_m,
                   mended.pattern_offset_y_m);
   };
-  return {"pattern offset", {kPatternX, kPatternY}, false, kMmPerM, "mm", claim, remedy};
+  return {"pattern offset",
+          "pattern offset",
+          {kPatternX, kPatternY},
+          false,
+          kMmPerM,
+          "mm",
+          claim,
+          remedy};
 }
 
 Suspect RangeOffset() {
@@ -102,7 +116,14 @@ Suspect RangeOffset() {
   const Say remedy = [](const FaultFit&) {
     return "take samples at more distances, which the refinement needs to take it out";
   };
-  return {"lidar range offset", {kRangeOffset}, false, kMmPerM, "mm", claim, remedy};
+  return {"lidar range offset",
+          "lidar range offset",
+          {kRangeOffset},
+          false,
+          kMmPerM,
+          "mm",
+          claim,
+          remedy};
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ namespace voqcal {
 /// One group of parameters that may be added to the plain fit, and how to speak of it.
 struct Suspect {
   std::string cause;  ///< One of a few.
+  std::string group;  ///< Of suspects that trade with each other: the lens' coefficients, say.
   std::vector<FaultParameter> faults;
   bool trades_rotation = false;  ///< The extrinsic turns with it, and points land as before.
   double scale = 1.0;            ///< From the first parameter's unit to that of the text.

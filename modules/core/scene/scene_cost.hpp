@@ -40,7 +40,7 @@ std::vector<SceneEdge> SceneEdgesInView(const std::vector<SceneView>& views,
 /// Where edges are looked at: the fields of all views at one blur.
 std::vector<EdgeField> MakeEdgeFields(const std::vector<SceneView>& views, double blur_px);
 
-/// Where edges are looked at: by which extrinsic, and in which fields.
+/// By which extrinsic, and in which fields.
 struct EdgeLookup {
   const std::vector<EdgeField>& fields;
   const CameraModel& camera;
@@ -50,8 +50,7 @@ struct EdgeLookup {
 
 /// The surprises at `num` edges.
 /// @param patches  one an edge, of its view's field; the same when the edges are asked again. Null
-/// if
-///     they are not.
+///     if they are not.
 /// @param J_rows   their derivatives by the unknowns, a row each; may be null.
 void SurprisesAt(const SceneEdge* const* edges,
                  std::size_t num,

@@ -15,8 +15,10 @@ namespace voqcal {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 /// A session of 30 poses with a VLP-16's noise; what was given may differ from what is true.
@@ -116,6 +118,7 @@ TEST(Diagnose, FindsAWrongFocalLength) {
   EXPECT_THAT(finding.text, AllOf(HasSubstr("too long"), HasSubstr("held out, it falls from")));
   EXPECT_GT(finding.explained, 0.1);
   // What is left is noise: 3 mm an axis, 4.8 mm in space, and a little for the parameters.
+  EXPECT_THAT(diagnosis.not_judged, Each(Not(HasSubstr("focal length"))));  // it is a finding
   EXPECT_LT(finding.held_out_after_mm, 6);
   EXPECT_GT(finding.held_out_before_mm, 8);
 }

@@ -106,7 +106,7 @@ std::string AssessorNode::State() const {
 bool AssessorNode::Step() {
   if (!samples_ || !averaged_ || !refined_) return false;
   if (!IsMadeFrom(*samples_, *averaged_) || !IsMadeFrom(*samples_, *refined_)) return false;
-  if (assessment_ && IsMadeFrom(*samples_, *assessment_)) return false;
+  if (HasAssessed(*samples_)) return false;
   if (!CanRead([this] { UpdateAssessment(); })) {
     samples_.reset();
     return false;
@@ -114,6 +114,10 @@ bool AssessorNode::Step() {
   Count(problem().empty() ? "assessments" : "without a result");
   Republish();
   return false;
+}
+
+bool AssessorNode::HasAssessed(const samples_t& samples) const {
+  return assessment_ && IsMadeFrom(samples, *assessment_);
 }
 
 void AssessorNode::Republish() {

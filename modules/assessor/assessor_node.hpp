@@ -34,6 +34,8 @@ class AssessorNode : public Module {
   bool Step() override;
   void Republish() override;
 
+  /// Whether `result` and `problem` are of these samples.
+  bool HasAssessed(const samples_t& samples) const;
   /// The newest result; nothing until there is one, or if the newest samples give none.
   const std::optional<CalibrationResult>& result() const { return result_; }
   /// Why the newest samples give no result; empty if they do, or if there are none yet.

@@ -6,6 +6,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "core/add_if_new.hpp"
 #include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/sensor_network/common_boards.hpp"
@@ -16,10 +17,6 @@ namespace {
 
 /// Where a turn and a shift are weighed against one another.
 constexpr double kTypicalRangeM = 5.0;
-
-void AddIfNew(const std::string& word, std::vector<std::string>* words) {
-  if (std::find(words->begin(), words->end(), word) == words->end()) words->push_back(word);
-}
 
 /// A pose that is in the list already would count twice.
 bool IsNew(const BoardPose& pose,
@@ -68,7 +65,7 @@ std::optional<CalibratedPair> CalibrateCameras(const PairSession& from,
         PairName(from.camera, to.camera));
   }
   const auto extrinsic = PairOfCameras(from.camera, to.camera, boards, to.lens);
-  if (!extrinsic || !extrinsic->covariance.allFinite()) return std::nullopt;
+  if (!extrinsic || !IsDefinite(*extrinsic)) return std::nullopt;
   CalibratedPair pair;
   pair.extrinsic = *extrinsic;
   pair.num_samples = static_cast<int>(boards.size());
@@ -119,6 +116,7 @@ void TakeResult(const std::vector<BoardSample>& samples,
   pair.folder = PairName(session->lidar, session->camera);
   pair.extrinsic.from = session->lidar;
   pair.extrinsic.to = session->camera;
+  pair.num_samples = static_cast<int>(samples.size());
   if (!result) {
     pair.problem = samples.empty() ? "the two never saw the board rest at one time" : problem;
     return;
@@ -128,8 +126,8 @@ void TakeResult(const std::vector<BoardSample>& samples,
   pair.verdict = VerdictOf(*result);
   pair.num_samples = static_cast<int>(result->used_ids.size());
   pair.samples_sha256 = result->made_from.log_sha256;
-  if (!result->covariance.allFinite()) {
-    pair.problem = "its poses are too few to tell how certain it is";
+  if (!IsDefinite(pair.extrinsic)) {
+    pair.problem = "its poses are too few, or too alike, to tell how certain it is";
   }
 }
 

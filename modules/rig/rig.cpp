@@ -7,6 +7,7 @@
 #include <arpa/inet.h>
 #include <spdlog/spdlog.h>
 
+#include "core/add_if_new.hpp"
 #include "core/problems.hpp"
 #include "files/atomic_file.hpp"
 #include "files/sha256.hpp"
@@ -101,10 +102,6 @@ std::vector<std::string> LinesOf(const std::string& text) {
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
-}
-
-void AddIfNew(const std::string& line, std::vector<std::string>* lines) {
-  if (std::find(lines->begin(), lines->end(), line) == lines->end()) lines->push_back(line);
 }
 
 }  // namespace

@@ -14,6 +14,15 @@ void HandleAll(Bus* bus) {
 
 }  // namespace
 
+PairSession SessionOf(const Rig& rig) {
+  PairSession session;
+  session.lidar = rig.lidar_name;
+  session.camera = rig.camera_name;
+  session.lens = rig.camera;
+  session.sampling = rig.sample_collector;
+  return session;
+}
+
 PairChain::PairChain(const Rig& rig,
                      Bus* bus,
                      const std::filesystem::path& session_folder,

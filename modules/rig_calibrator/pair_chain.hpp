@@ -9,10 +9,14 @@
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
 #include "messaging/session_views.hpp"
+#include "result/join_rig.hpp"
 #include "rig/rig.hpp"
 #include "voq_selector/voq_selector_node.hpp"
 
 namespace voqcal {
+
+/// What its session is of; nothing came of it yet.
+PairSession SessionOf(const Rig& rig);
 
 /// What makes a pair's result of its samples: the modules of a live pair, one after the other on
 /// one bus. The same samples give the bytes that these give as processes.

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <utility>
 
-#include <system_error>
+#include <spdlog/spdlog.h>
 
 #include "core/sensor_network/sensor_pair.hpp"
 #include "files/atomic_file.hpp"
@@ -24,13 +25,11 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLookAtWorker{50};
 
-PairSession EmptySession(const Rig& rig) {
-  PairSession session;
-  session.lidar = rig.lidar_name;
-  session.camera = rig.camera_name;
-  session.lens = rig.camera;
-  session.sampling = rig.sample_collector;
+/// Of a pair that waits for its turn.
+PairSession WaitingSession(const Rig& rig) {
+  PairSession session = SessionOf(rig);
   TakeResult({}, std::nullopt, "", &session);
+  session.pair.problem = "not calibrated yet";
   return session;
 }
 
@@ -46,8 +45,7 @@ void KeepSaid(const std::string& channel,
 /// A tree that is not of these samples must not be taken for theirs.
 void WriteResult(const std::filesystem::path& file, const RigExtrinsics& rig) {
   if (rig.network.IsUsable()) return WriteFileAtomically(file, ToYaml(rig));
-  std::error_code ignored;  // it was not there
-  std::filesystem::remove(file, ignored);
+  std::filesystem::remove(file);
 }
 
 }  // namespace
@@ -64,8 +62,13 @@ PairSession RigCalibratorNode::Chain::Calibrate(const samples_t& message,
                                                 const std::vector<BoardSample>& samples) {
   bus.Publish(rig.channels.calib_samples, message);
   modules.Run();
-  PairSession session = EmptySession(rig);
-  TakeResult(samples, modules.assessor().result(), modules.assessor().problem(), &session);
+  PairSession session = SessionOf(rig);
+  if (modules.assessor().HasAssessed(message)) {
+    TakeResult(samples, modules.assessor().result(), modules.assessor().problem(), &session);
+  } else {
+    TakeResult({}, std::nullopt, "", &session);
+    session.pair.problem = "its samples could not be calibrated: an error of the program";
+  }
   return session;
 }
 
@@ -83,13 +86,18 @@ RigCalibratorNode::RigCalibratorNode(const std::vector<Rig>& pairs,
     pairs_[i].name = PairName(rig.lidar_name, rig.camera_name);
     pairs_[i].chain = std::make_unique<Chain>(rig, session_folder / pairs_[i].name);
     bus_.Keep(rig.channels.calib_samples, &pairs_[i].newest);
-    sessions_.push_back(EmptySession(rig));
+    sessions_.push_back(WaitingSession(rig));
   }
   message_ = ToMessage(JoinSessions(sessions_, "", made_from_));
 }
 
 RigCalibratorNode::~RigCalibratorNode() {
-  if (work_.valid()) work_.wait();
+  if (!work_.valid()) return;
+  try {
+    work_.get();
+  } catch (const std::exception& error) {
+    spdlog::error("{}: {}", pairs_[working_on_].name, error.what());
+  }
 }
 
 std::string RigCalibratorNode::State() const {
@@ -120,6 +128,11 @@ bool RigCalibratorNode::Step() {
 }
 
 void RigCalibratorNode::Republish() {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    if (pairs_[i].IsWaiting() && pairs_[i].newest) {
+      message_.pairs[i].num_samples = pairs_[i].newest->num_samples;
+    }
+  }
   bus_.Publish(channel_, message_);
   for (const Pair& pair : pairs_) {
     for (const auto& [channel, bytes] : pair.said) {
@@ -151,18 +164,21 @@ void RigCalibratorNode::Start(std::size_t index) {
   }
   working_on_ = index;
   pair.made_of = {pair.newest->utime, pair.newest->revision, pair.newest->log_sha256};
+  // Before that a tree without the others would take the place of an earlier one with them.
+  const bool is_whole = std::none_of(
+      pairs_.begin(), pairs_.end(), [](const Pair& each) { return each.IsWaiting(); });
   work_ = std::async(
       std::launch::async,
       [this,
        index,
+       is_whole,
        chain = pair.chain.get(),
        message = *pair.newest,
        samples = std::move(samples),
        sessions = sessions_]() mutable {
-        if (message.is_finished == 0) GiveWay();
         sessions[index] = chain->Calibrate(message, samples);
         Outcome outcome = {sessions[index], chain->said, JoinSessions(sessions, "", made_from_)};
-        WriteResult(result_file_, outcome.rig);
+        if (is_whole) WriteResult(result_file_, outcome.rig);
         return outcome;
       });
 }

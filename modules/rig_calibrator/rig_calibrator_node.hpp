@@ -25,7 +25,8 @@ namespace voqcal {
 /// samples: messages are heard meanwhile.
 ///
 /// The files are those that calibrate_rig leaves, of the same samples to the byte: extrinsic.yaml
-/// in the folder of each pair, rig_extrinsics.yaml beside them.
+/// in the folder of each pair, rig_extrinsics.yaml beside them. A rig_extrinsics.yaml that is there
+/// already stays until every pair was worked on.
 class RigCalibratorNode : public Module {
  public:
   /// @param pairs  LoadPairs of a rig.
@@ -34,7 +35,7 @@ class RigCalibratorNode : public Module {
   RigCalibratorNode(const std::vector<Rig>& pairs,
                     Bus* bus,
                     const std::filesystem::path& session_folder);
-  /// Waits for the worker.
+  /// Waits for the worker, and logs what it threw.
   ~RigCalibratorNode() override;
 
   std::string Name() const override { return "rig_calibrator"; }
@@ -70,6 +71,9 @@ class RigCalibratorNode : public Module {
     std::optional<samples_t> newest;
     MadeOf made_of;
     Messages said;
+
+    /// It was not worked on yet.
+    bool IsWaiting() const { return made_of.revision < 0; }
   };
   struct Outcome {
     PairSession session;

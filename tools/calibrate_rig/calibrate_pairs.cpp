@@ -19,6 +19,7 @@
 #include "calibrate/offline_run.hpp"
 #include "common/progress.hpp"
 #include "core/parallel.hpp"
+#include "rig_calibrator/pair_chain.hpp"
 
 namespace voqcal {
 namespace {
@@ -144,11 +145,7 @@ PairSession Calibrate(const Rig& rig,
     std::istringstream lines(error.what());
     for (std::string line; std::getline(lines, line);) spdlog::warn("{}: {}", folder, line);
   }
-  PairSession session;
-  session.lidar = rig.lidar_name;
-  session.camera = rig.camera_name;
-  session.lens = rig.camera;
-  session.sampling = rig.sample_collector;
+  PairSession session = SessionOf(rig);
   session.use_log_times = use_log_times;
   TakeResult(run.samples(), run.assessor().result(), run.assessor().problem(), &session);
   return session;

@@ -1,6 +1,5 @@
 // calibrate_rig: every pair of a rig's lidars and cameras on one recording, joined to one tree.
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
@@ -17,6 +16,7 @@
 #include "calibrate_rig/calibrate_pairs.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
+#include "core/add_if_new.hpp"
 #include "files/atomic_file.hpp"
 #include "files/nearest_word.hpp"
 #include "messaging/log.hpp"
@@ -40,10 +40,6 @@ std::string Joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
-}
-
-void AddIfNew(const std::string& word, std::vector<std::string>* words) {
-  if (std::find(words->begin(), words->end(), word) == words->end()) words->push_back(word);
 }
 
 RigSensors SensorsOf(const std::vector<Rig>& pairs) {

@@ -48,10 +48,8 @@ std::vector<std::string> InputProblems(const std::vector<std::string>& sensors,
     problems.Require(pair.from != pair.to, "a pair must be of two different sensors", name);
     problems.Require(
         seen.insert(std::minmax(pair.from, pair.to)).second, "each pair is given once", name);
-    const bool is_definite = pair.covariance.allFinite() &&
-                             pair.covariance.llt().info() == Eigen::Success &&
-                             pair.T_to_from.matrix().allFinite();
-    problems.Require(is_definite, "a pair must be finite, its covariance positive definite", name);
+    problems.Require(
+        IsDefinite(pair), "a pair must be finite, its covariance positive definite", name);
   }
   return problems.lines();
 }

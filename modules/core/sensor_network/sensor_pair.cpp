@@ -1,5 +1,7 @@
 #include "core/sensor_network/sensor_pair.hpp"
 
+#include <Eigen/Cholesky>
+
 namespace voqcal {
 
 // With a, b the perturbations of rotation and translation on the side `to`:
@@ -14,6 +16,11 @@ RelativePose::RelativePose(const Eigen::Isometry3d& T_reference_from,
   J_to = -J_from;
   J_to.bottomLeftCorner<3, 3>() =
       R_to_reference * Skew(T_reference_from.translation() - T_reference_to.translation());
+}
+
+bool IsDefinite(const SensorPair& pair) {
+  return pair.T_to_from.matrix().allFinite() && pair.covariance.allFinite() &&
+         pair.covariance.llt().info() == Eigen::Success;
 }
 
 std::string PairName(const std::string& from, const std::string& to) { return from + "_" + to; }

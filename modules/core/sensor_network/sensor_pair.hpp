@@ -18,6 +18,9 @@ struct SensorPair {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
+/// Whether it can be joined to others: it is finite, its covariance positive definite.
+bool IsDefinite(const SensorPair& pair);
+
 /// What a pair is called wherever it needs a name: its folder, its channels, its lines.
 /// "front_left".
 std::string PairName(const std::string& from, const std::string& to);

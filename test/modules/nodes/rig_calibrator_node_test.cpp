@@ -17,6 +17,7 @@ namespace voqcal {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::Eq;
 using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -69,7 +70,7 @@ TEST_F(RigCalibratorNodeTest, SaysWhatToJoinUntilAllPairsHoldTheRig) {
   EXPECT_EQ(newest().num_sensors, 0);
   EXPECT_THAT(newest().pairs,
               ElementsAre(Field(&rig_pair_t::problem, IsEmpty()),
-                          Field(&rig_pair_t::problem, HasSubstr("never saw the board"))));
+                          Field(&rig_pair_t::problem, Eq("not calibrated yet"))));
   EXPECT_TRUE(HasFile("front_left/extrinsic.yaml"));
   EXPECT_FALSE(HasFile("rig_extrinsics.yaml"));
 
@@ -118,6 +119,27 @@ TEST_F(RigCalibratorNodeTest, AnEarlierTreeIsNotLeftBesideSamplesThatGiveNone) {
   EXPECT_THAT(newest().problem, HasSubstr("front, left | right"));
   EXPECT_FALSE(HasFile("rig_extrinsics.yaml"));
   EXPECT_FALSE(HasFile("front_right/extrinsic.yaml"));
+}
+
+TEST_F(RigCalibratorNodeTest, StartedAgainItKeepsTheRigsFileUntilEveryPairWasWorkedOn) {
+  folder_.Write("rig_extrinsics.yaml", "of before");
+  Send(0, 8, 8);
+  Work();
+  EXPECT_EQ(ReadWholeFile(folder_.path() / "rig_extrinsics.yaml"), "of before");
+  Send(1, 8, 8);
+  Work();
+  EXPECT_THAT(ReadWholeFile(folder_.path() / "rig_extrinsics.yaml"),
+              HasSubstr("\nreference: front"));
+}
+
+TEST_F(RigCalibratorNodeTest, APairThatWaitsIsToldWithItsSamples) {
+  Send(0, 8, 8);
+  Send(1, 9, 9);
+  node_.Republish();
+  test::HandleAll(&bus_);
+  EXPECT_EQ(newest().pairs[0].num_samples, 8);
+  EXPECT_EQ(newest().pairs[1].num_samples, 9);
+  EXPECT_EQ(newest().pairs[1].problem, "not calibrated yet");
 }
 
 TEST_F(RigCalibratorNodeTest, AMessageThatContradictsItselfIsCounted) {

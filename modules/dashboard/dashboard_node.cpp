@@ -7,6 +7,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "core/sensor_network/sensor_pair.hpp"
 #include "dashboard/exports.hpp"
 #include "dashboard/sensor_frames.hpp"
 #include "files/atomic_file.hpp"
@@ -230,6 +231,7 @@ void DashboardNode::SendCommand(const PageRequest& request) {
   message.utime = WallClockUs();
   message.command = request.command;
   message.sample_id = request.sample_id;
+  message.pair = PairName(rig_.lidar_name, rig_.camera_name);
   bus_.Publish(rig_.channels.calib_command, message);
   is_report_wanted_ = request.command == "finish";
   Count("commands: " + request.command);

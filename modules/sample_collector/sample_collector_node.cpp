@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/least_samples.hpp"
+#include "core/sensor_network/sensor_pair.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/encode.hpp"
 #include "messaging/session_misses.hpp"
@@ -47,6 +48,7 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
                                          Bus* bus,
                                          const std::filesystem::path& session_folder)
     : channels_(rig.channels),
+      pair_(PairName(rig.lidar_name, rig.camera_name)),
       bus_(*bus),
       session_folder_(session_folder),
       picker_(rig.board, rig.sample_collector),
@@ -255,6 +257,7 @@ void SampleCollectorNode::OnBoard(const BoardMessage& message, Stream* stream) {
 }
 
 void SampleCollectorNode::OnCommand(const command_t& message) {
+  if (!message.pair.empty() && message.pair != pair_) return;  // another one of the rig
   if (message.command == "capture") {
     GoOn();
     picker_.RequestCapture();

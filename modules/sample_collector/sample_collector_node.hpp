@@ -98,6 +98,7 @@ class SampleCollectorNode : public Module {
   void PublishSamples();
 
   Channels channels_;
+  std::string pair_;  ///< Which commands are meant for it.
   Bus& bus_;
   std::filesystem::path session_folder_;
   SamplePicker picker_;

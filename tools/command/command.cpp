@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "command/outcome.hpp"
 #include "command/rig_command.hpp"
 #include "common/run_program.hpp"
 #include "common/tool_main.hpp"
+#include "core/sensor_network/sensor_pair.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/made_from.hpp"
 #include "messaging/wall_clock.hpp"
@@ -53,25 +55,9 @@ std::int64_t Send(const CommandArgs& args, const Rig& rig, Bus* bus) {
   message.utime = WallClockUs();
   message.command = args.command;
   message.sample_id = args.sample_id;
+  message.pair = PairName(rig.lidar_name, rig.camera_name);
   bus->Publish(rig.channels.calib_command, message);
   return message.utime;
-}
-
-/// What an event says of the command that was sent at `utime`; nothing if it is about another
-/// thing. A sample that was accepted by itself is not what "capture" asked for.
-/// @throws std::runtime_error with the reason, if the collector refused it.
-std::optional<std::string> OutcomeOf(const std::string& command,
-                                     std::int64_t utime,
-                                     const event_t& event) {
-  const std::string sample = "sample " + std::to_string(event.sample_id);
-  const bool is_captured = event.kind == "accepted" && event.reason.rfind("by command", 0) == 0;
-  if (command == "capture" && is_captured) return sample + " taken " + event.reason;
-  if (command == "finish" && event.kind == "finished") return "finished";
-  if (event.utime != utime) return {};
-  if (event.kind == "discarded") return sample + " discarded";
-  if (event.kind == "reset") return "all samples taken away";
-  if (event.kind == "rejected") throw std::runtime_error(event.reason);
-  return {};
 }
 
 void SendAndTellOutcome(const CommandArgs& args, const Rig& rig, Bus* bus) {

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "command/outcome.hpp"
 #include "common/run_program.hpp"
 #include "common/tool_main.hpp"
 #include "core/sensor_network/sensor_pair.hpp"
@@ -38,17 +40,19 @@ class Hearing {
       bus_.Keep(pairs[i].channels.calib_samples, &samples_[i]);
       bus_.Subscribe<event_t>(pairs[i].channels.calib_event,
                               Queue::kEvery,
-                              [this, i](const event_t& m) { events_.emplace_back(names_[i], m); });
+                              [this, i](const event_t& m) { events_.emplace_back(i, m); });
     }
     bus_.Keep(pairs.front().channels.rig_extrinsics, &rig_);
     command_channel_ = pairs.front().channels.calib_command;
   }
 
-  void Send(const std::string& command) {
+  /// @return the command's utime.
+  std::int64_t Send(const std::string& command) {
     command_t message{};
     message.utime = WallClockUs();
     message.command = command;
     bus_.Publish(command_channel_, message);
+    return message.utime;
   }
 
   void Hear() { bus_.HandleOnce(std::chrono::milliseconds(100)); }
@@ -56,10 +60,15 @@ class Hearing {
   /// Pairs that do not satisfy it, by name; those of which nothing is heard yet among them.
   template <typename Condition>
   std::string Without(const Condition& condition) const {
+    return WithoutAmongAll(
+        [&](std::size_t i) { return samples_[i] && condition(i, *samples_[i]); });
+  }
+  /// The same, whether anything is heard of them or not.
+  template <typename Condition>
+  std::string WithoutAmongAll(const Condition& condition) const {
     std::string names;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      if (samples_[i] && condition(i, *samples_[i])) continue;
-      names += (names.empty() ? "" : ", ") + names_[i];
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      if (!condition(i)) names += (names.empty() ? "" : ", ") + names_[i];
     }
     return names;
   }
@@ -71,14 +80,16 @@ class Hearing {
   }
 
   const std::optional<rig_extrinsics_t>& rig() const { return rig_; }
-  std::vector<std::pair<std::string, event_t>> TakeEvents() { return std::exchange(events_, {}); }
+  const std::string& name(std::size_t pair) const { return names_[pair]; }
+  /// By pair.
+  std::vector<std::pair<std::size_t, event_t>> TakeEvents() { return std::exchange(events_, {}); }
 
  private:
   Bus& bus_;
   std::string command_channel_;
   std::vector<std::string> names_;
   std::vector<std::optional<samples_t>> samples_;
-  std::vector<std::pair<std::string, event_t>> events_;
+  std::vector<std::pair<std::size_t, event_t>> events_;
   std::optional<rig_extrinsics_t> rig_;
 };
 
@@ -162,48 +173,62 @@ void FinishAndWait(const RigCommand& command, const std::vector<Rig>& pairs, Bus
   if (rig.verdict_grade == "bad") throw DemandNotMet(rig.verdict_headline);
 }
 
-/// Says what each collector made of it.
-void SendAndTell(const RigCommand& command, const std::vector<Rig>& pairs, Bus* bus) {
-  const std::string wanted = command.command == "capture" ? "accepted"
-                             : command.command == "reset" ? "reset"
-                                                          : "finished";
-  Hearing hearing(pairs, bus);
-  hearing.Send(command.command);
-  std::size_t num_done = 0;
+/// Says what each collector made of it: a line for each that answers.
+/// @return who did not answer, by name.
+std::string SendAndTell(const std::string& command, Hearing* hearing) {
+  std::int64_t utime = hearing->Send(command);
+  Clock::time_point next_send = Clock::now() + kSayAgain;
+  std::set<std::size_t> answered;
+  const auto has_answered = [&answered](std::size_t pair) { return answered.count(pair) != 0; };
   for (const Clock::time_point end = Clock::now() + kPatience;
-       Clock::now() < end && num_done < pairs.size();) {
-    hearing.Hear();
-    for (const auto& [pair, event] : hearing.TakeEvents()) {
-      if (event.kind != wanted) continue;
-      ++num_done;
-      std::printf(
-          "%s: %s%s\n",
-          pair.c_str(),
-          event.kind.c_str(),
-          event.sample_id == 0 ? "" : (" sample " + std::to_string(event.sample_id)).c_str());
+       Clock::now() < end && !hearing->WithoutAmongAll(has_answered).empty();) {
+    if (command == "finish" && Clock::now() >= next_send) {
+      utime = hearing->Send(command);
+      next_send += kSayAgain;
+    }
+    hearing->Hear();
+    for (const auto& [pair, event] : hearing->TakeEvents()) {
+      const auto outcome = OutcomeOf(command, utime, event);
+      if (!outcome || !answered.insert(pair).second) continue;
+      std::printf("%s: %s\n", hearing->name(pair).c_str(), outcome->c_str());
     }
   }
-  if (num_done > 0) return;
+  std::fflush(stdout);
+  return hearing->WithoutAmongAll(has_answered);
+}
+
+/// @throws std::runtime_error if a collector is not there, or did not do what it can always do.
+void SendAndJudge(const std::string& command, const std::vector<Rig>& pairs, Bus* bus) {
+  Hearing hearing(pairs, bus);
+  const std::string unanswered = SendAndTell(command, &hearing);
+  if (unanswered.empty()) return;
   const std::string silent = hearing.Without([](std::size_t, const samples_t&) { return true; });
   if (!silent.empty()) TellSilent(silent);
-  throw std::runtime_error(command.command == "capture"
-                               ? "no sample yet: the next frames that show the board to both "
-                                 "sensors of a pair will be one"
-                               : "sent, but nothing is known to have come of it");
+  if (command == "finish") {
+    std::printf(
+        "sent; the detectors are still at work on earlier frames of %s (--wait waits for them)\n",
+        unanswered.c_str());
+    return;
+  }
+  if (command == "reset") {
+    throw std::runtime_error("sent, but nothing is known to have come of it: " + unanswered);
+  }
+  if (hearing.WithoutAmongAll([](std::size_t) { return false; }) != unanswered) return;
+  throw std::runtime_error(
+      "no sample yet: the next frames that show the board to both sensors of a pair will be one");
 }
 
 }  // namespace
 
 void CommandRig(const RigCommand& command, const std::vector<Rig>& pairs, Bus* bus) {
   if (command.command == "discard") {
-    throw std::runtime_error(
-        "discard takes away a sample of one pair, and all pairs of a rig hear it: leave it to the "
-        "calibration, which takes out what contradicts the rest");
+    throw std::runtime_error("discard takes away a sample of one pair: name it, as in --rig " +
+                             pairs.front().path.string());
   }
   if (command.command == "finish" && command.wait.count() > 0) {
     FinishAndWait(command, pairs, bus);
   } else {
-    SendAndTell(command, pairs, bus);
+    SendAndJudge(command.command, pairs, bus);
   }
 }
 

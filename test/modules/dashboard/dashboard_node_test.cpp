@@ -187,6 +187,7 @@ TEST_F(DashboardNodeTest, SendsCommands) {
   ASSERT_THAT(commands_.messages, SizeIs(1));
   EXPECT_EQ(commands_.messages[0].command, "discard");
   EXPECT_EQ(commands_.messages[0].sample_id, 5);
+  EXPECT_EQ(commands_.messages[0].pair, "lidar_camera");
   EXPECT_GT(commands_.messages[0].utime, 0);
 }
 

@@ -58,10 +58,11 @@ class SampleCollectorNodeTest : public ::testing::Test {
     }
   }
 
-  void Command(const std::string& text, std::int64_t sample_id = 0) {
+  void Command(const std::string& text, std::int64_t sample_id = 0, const std::string& pair = {}) {
     command_t command{};
     command.command = text;
     command.sample_id = sample_id;
+    command.pair = pair;
     test::Send(bus_.get(), rig_.channels.calib_command, command);
   }
 
@@ -147,6 +148,16 @@ TEST_F(SampleCollectorNodeTest, DiscardsTheNewestOrTheNamedSample) {
   EXPECT_EQ(last_event().kind, "rejected");
   EXPECT_EQ(last_event().reason, "there is no sample 1");
   EXPECT_THAT(Ids(), ElementsAre(2));
+}
+
+TEST_F(SampleCollectorNodeTest, ObeysWhatIsMeantForItsPairOrForAll) {
+  for (int stop = 0; stop < 3; ++stop) ShowStop(stop);
+  Command("reset", 0, "front_left");
+  EXPECT_THAT(Ids(), ElementsAre(1, 2, 3));
+  Command("discard", 0, "lidar_camera");
+  EXPECT_THAT(Ids(), ElementsAre(1, 2));
+  Command("reset");
+  EXPECT_THAT(Ids(), IsEmpty());
 }
 
 TEST_F(SampleCollectorNodeTest, TakesADiscardedPoseAnew) {

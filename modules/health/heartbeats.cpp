@@ -18,18 +18,20 @@ std::int64_t NumReceived(const HeardModule* heard, const std::string& channel) {
   return 0;
 }
 
-/// It is that session, or a pair's within it.
-bool IsOf(const std::string& session, const std::string& own) {
-  return session == own || (!own.empty() && session.rfind(own + "/", 0) == 0);
+/// Two sessions that run it mix what they send or keep. Who only watches (extrinsic_monitor) or
+/// shows (the pages of two pairs of one rig) mixes nothing.
+bool MixesSessions(const std::string& name) {
+  const std::string module = ModuleOf(name);
+  return !module.empty() && module != "dashboard" && module != "pose_guide";
 }
 
 /// Those lately heard, but for `own`: "a and of b"; and how many.
 std::pair<std::string, int> SessionsText(const std::map<std::string, HeardModule::Time>& sessions,
-                                         const std::string& own,
+                                         const std::set<std::string>& own,
                                          HeardModule::Time now) {
   std::pair<std::string, int> text{"", 0};
   for (const auto& [session, at] : sessions) {
-    if (IsOf(session, own) || SecondsBetween(at, now) > kSilenceS) continue;
+    if (own.count(session) != 0 || SecondsBetween(at, now) > kSilenceS) continue;
     text.first += (text.second++ == 0 ? "" : " and of ") + session;
   }
   return text;
@@ -58,13 +60,17 @@ SessionPlan PlanOfPair(const Channels& channels) {
           {StreamOf(channels.lidar_points, "lidar_driver", "lidar"),
            StreamOf(channels.camera_image, "camera_driver", "camera"),
            DetectorStream(channels.lidar_board, "lidar_board_detector", channels.lidar_points),
-           DetectorStream(channels.camera_board, "camera_board_detector", channels.camera_image)}};
+           DetectorStream(channels.camera_board, "camera_board_detector", channels.camera_image)},
+          {}};
 }
 
 SessionPlan PlanOfRig(const std::filesystem::path& rig, const std::vector<Rig>& pairs) {
   if (pairs.size() == 1) return PlanOfPair(pairs.front().channels);
   SessionPlan plan;
-  for (const SessionProgram& program : ProgramsOfRig(rig)) plan.modules.push_back(program.name);
+  for (const SessionProgram& program : ProgramsOfRig(rig)) {
+    plan.modules.push_back(program.name);
+    if (!program.folder.empty()) plan.folders.push_back(program.folder);
+  }
   std::vector<Stream> detectors;
   std::set<std::string> told;
   for (const Rig& pair : pairs) {
@@ -159,16 +165,22 @@ void Heartbeats::NoteLosses(const module_status_t& status, const HeardModule* be
   if (before != nullptr && sum(status) > sum(before->status)) last_loss_ = now;
 }
 
-std::vector<std::string> Heartbeats::Rivals(Time now, const std::string& own) const {
+std::vector<std::string> Heartbeats::Rivals(Time now,
+                                            const std::string& own,
+                                            const std::vector<std::string>& folders) const {
   const int least = own.empty() ? 2 : 1;
+  std::set<std::string> all_own;
+  if (!own.empty()) all_own.insert(own);
+  for (const std::string& folder : folders) all_own.insert(own + "/" + folder);
   std::vector<std::string> rivals;
   for (const auto& [module, heard] : heard_) {
-    if (ModuleOf(module).empty()) continue;  // who only watches (extrinsic_monitor) disturbs none
-    const auto [names, num] = SessionsText(heard.sessions, own, now);
+    if (!MixesSessions(module)) continue;
+    const auto [names, num] = SessionsText(heard.sessions, all_own, now);
     if (num >= least) rivals.push_back(module + " of " + names + " runs on this network");
   }
   for (const auto& [module, sessions] : to_be_started_) {
-    const auto [names, num] = SessionsText(sessions, own, now);
+    if (!MixesSessions(module)) continue;
+    const auto [names, num] = SessionsText(sessions, all_own, now);
     if (num >= least) {
       rivals.push_back(module + " of " + names + " is about to be started on this network");
     }

@@ -52,6 +52,7 @@ struct Stream {
 struct SessionPlan {
   std::vector<std::string> modules;  ///< By their names in it, in the order of the flow.
   std::vector<Stream> streams;       ///< Of its sensors, then of their detectors.
+  std::vector<std::string> folders;  ///< Of its pairs, within its own: sessions of its modules.
 };
 SessionPlan PlanOfPair(const Channels& channels);
 /// @param pairs  LoadPairs of it.
@@ -75,9 +76,13 @@ class Heartbeats {
   /// Of the sensors, then of their detectors.
   const std::vector<Stream>& streams() const { return streams_; }
 
-  /// A sentence for each module that sessions other than `own` run, or are about to start, on this
-  /// network; none: it is free. With no `own`: for each module that more than one session runs.
-  std::vector<std::string> Rivals(Time now, const std::string& own = {}) const;
+  /// A sentence for each module that sends or collects and that sessions other than `own` run, or
+  /// are about to start, on this network; none: it is free. With no `own`: for each such module
+  /// that more than one session runs.
+  /// @param folders  within `own`, that are its pairs' (SessionPlan).
+  std::vector<std::string> Rivals(Time now,
+                                  const std::string& own = {},
+                                  const std::vector<std::string>& folders = {}) const;
 
   /// "lidar_board_detector: 5 of 100 LIDAR_POINTS; ...": empty if nothing was lost.
   std::string Losses() const;

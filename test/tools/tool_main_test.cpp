@@ -43,6 +43,7 @@ TEST(RunTool, TellsAnUnmetDemandFromAFailure) {
   };
   EXPECT_EQ(status_of([] {}), 0);
   EXPECT_EQ(status_of([] { throw std::runtime_error("broken"); }), 1);
+  EXPECT_EQ(status_of([] { throw UsageError("no such module"); }), 2);
   EXPECT_EQ(status_of([] { throw DemandNotMet("not good"); }), 3);
 }
 

@@ -39,6 +39,9 @@ int StatusOf(const std::string& program, const std::function<void()>& steps) {
   } catch (const DemandNotMet& unmet) {
     PrintError(program, unmet.what());
     return kDemandNotMet;
+  } catch (const UsageError& error) {
+    PrintError(program, error.what() + std::string(" (--help lists the flags)"));
+    return kUsageError;
   } catch (const std::exception& error) {
     PrintError(program, error.what());
     return EXIT_FAILURE;

@@ -48,14 +48,14 @@ constexpr std::chrono::milliseconds kOnceDuration{2500};
 /// Of looks into the session's folder.
 constexpr std::chrono::milliseconds kLookPeriod{500};
 
-/// @throws std::runtime_error for one that the session has not.
+/// @throws UsageError for one that the session has not.
 std::vector<std::string> ModulesOf(const StatusArgs& args, const SessionPlan& plan) {
   const std::vector<std::string>& all = plan.modules;
   for (const std::string& module : args.modules) {
     if (std::find(all.begin(), all.end(), module) != all.end()) continue;
     std::string names;
     for (const std::string& each : all) names += (names.empty() ? "" : ", ") + each;
-    throw std::runtime_error("--modules: no module '" + module + "'; there are " + names);
+    throw UsageError("--modules: no module '" + module + "'; there are " + names);
   }
   return args.modules;
 }
@@ -170,8 +170,8 @@ void RequireNoRival(const Listener& listener,
                     const std::vector<std::string>& modules,
                     const std::string& session) {
   std::string problems;
-  for (const std::string& rival :
-       listener.page().health().heartbeats().Rivals(Clock::now(), session)) {
+  for (const std::string& rival : listener.page().health().heartbeats().Rivals(
+           Clock::now(), session, listener.plan().folders)) {
     const std::string module = rival.substr(0, rival.find(' '));
     const bool is_same = std::any_of(modules.begin(), modules.end(), [&](const std::string& own) {
       // One of a pair, and one of several such of a rig, hear the same commands.

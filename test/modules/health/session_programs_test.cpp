@@ -72,9 +72,24 @@ TEST(SessionPrograms, APairsSessionWithinARigsIsNoRival) {
   const Heartbeats::Time now{};
   heartbeats.Take(StatusOf("lidar_driver_front", "host:/logs/truck"), now);
   heartbeats.Take(StatusOf("sample_collector_front_left", "host:/logs/truck/front_left"), now);
-  EXPECT_THAT(heartbeats.Rivals(now, "host:/logs/truck"), IsEmpty());
+  EXPECT_THAT(heartbeats.Rivals(now, "host:/logs/truck", {"front_left"}), IsEmpty());
+  EXPECT_THAT(heartbeats.Rivals(now, "host:/logs/truck"), SizeIs(1));  // another's, in its folder
   EXPECT_THAT(heartbeats.Rivals(now), IsEmpty());
   EXPECT_THAT(heartbeats.Rivals(now, "host:/logs/tru"), SizeIs(2));
+}
+
+TEST(SessionPrograms, ThePagesOfTwoPairsAreNoRivals) {
+  Heartbeats heartbeats;
+  const Heartbeats::Time now{};
+  for (const char* pair : {"host:/logs/truck/front_left", "host:/logs/truck/front_right"}) {
+    heartbeats.Take(StatusOf("dashboard", pair), now);
+    heartbeats.Take(StatusOf("pose_guide", pair), now);
+  }
+  EXPECT_THAT(heartbeats.Rivals(now), IsEmpty());
+  for (const char* pair : {"host:/logs/truck/front_left", "host:/logs/truck/front_right"}) {
+    heartbeats.Take(StatusOf("assessor", pair), now);
+  }
+  EXPECT_THAT(heartbeats.Rivals(now), SizeIs(1));
 }
 
 }  // namespace

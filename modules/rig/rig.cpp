@@ -128,15 +128,16 @@ Rig LoadRig(const std::filesystem::path& path, LensInRig* lens) {
   return Told(Load(path, SensorChoice::kCamera, lens));
 }
 
-RigSensors SensorsOfRig(const std::filesystem::path& path) {
+RigSensors SensorsOfRig(const std::filesystem::path& path, PairLine pair_line) {
   RigPlace place = PlaceOfRig(path);
   YamlDocument document(place.file.string(), ReadWholeFile(place.file));
-  const RigSensors sensors = ReadRigSensors(&place, &document);
+  const RigSensors sensors = ReadRigSensors(pair_line, &place, &document);
   return {Meant(sensors.lidars, place.names), Meant(sensors.cameras, place.names)};
 }
 
-std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path) {
-  const RigSensors sensors = SensorsOfRig(path);
+std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path,
+                                              PairLine pair_line) {
+  const RigSensors sensors = SensorsOfRig(path, pair_line);
   if (sensors.lidars.empty()) return {path};
   std::vector<std::filesystem::path> paths;
   for (const std::string& lidar : sensors.lidars) {
@@ -147,11 +148,11 @@ std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path)
   return paths;
 }
 
-std::vector<Rig> LoadPairs(const std::filesystem::path& path) {
+std::vector<Rig> LoadPairs(const std::filesystem::path& path, PairLine pair_line) {
   std::vector<Rig> rigs;
   std::vector<std::string> remarks;  // of one file, whichever pair is read
   std::vector<std::string> problems;
-  for (const std::filesystem::path& each : PairsOfRig(path)) {
+  for (const std::filesystem::path& each : PairsOfRig(path, pair_line)) {
     try {
       rigs.push_back(Load(each, SensorChoice::kPair, nullptr));
       for (const std::string& remark : rigs.back().remarks) AddIfNew(remark, &remarks);

@@ -190,15 +190,20 @@ struct RigSensors {
 ///     wrong types, Problems() of any part; which pairs there are, if `path` names none.
 Rig LoadRig(const std::filesystem::path& path);
 
+/// What a file's `pair:` line says, which a session's copy has: the session is of that pair. Who
+/// calibrates or checks a whole rig takes every pair all the same; `sensors:` chooses for both.
+enum class PairLine { kChooses, kIsIgnored };
+
 /// Those that are meant: of a kind of which `path` (or, where it names none, the file) names some,
 /// these, else all. None if the file does not have them by name.
 /// @throws as LoadRig if the sensors' names are wrong.
-RigSensors SensorsOfRig(const std::filesystem::path& path);
+RigSensors SensorsOfRig(const std::filesystem::path& path, PairLine line = PairLine::kChooses);
 
 /// A path for each pair of SensorsOfRig: each camera of the first lidar, of the second, ...; `path`
 /// itself if the file does not have them by name.
 /// @throws as LoadRig if the sensors' names are wrong.
-std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path);
+std::vector<std::filesystem::path> PairsOfRig(const std::filesystem::path& path,
+                                              PairLine line = PairLine::kChooses);
 
 /// Which sensors a program works on.
 enum class SensorChoice { kPair, kLidar, kCamera };
@@ -209,7 +214,7 @@ Rig LoadRig(const std::filesystem::path& path, SensorChoice choice);
 
 /// LoadRig of each of PairsOfRig.
 /// @throws as LoadRig, each problem once.
-std::vector<Rig> LoadPairs(const std::filesystem::path& path);
+std::vector<Rig> LoadPairs(const std::filesystem::path& path, PairLine line = PairLine::kChooses);
 
 /// What a rig file says of a lens that may still have to be found.
 struct LensInRig {

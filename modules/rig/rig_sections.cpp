@@ -232,10 +232,13 @@ void ReadSensors(const std::filesystem::path& rig_path,
 }
 
 /// Where the path names none, the file may: a session's copy says which were meant.
-RigPlace PlaceInFile(const RigPlace& place, YamlSection* top) {
+RigPlace PlaceInFile(const RigPlace& place, PairLine line, YamlSection* top) {
   std::string names;
+  std::string pair;
   top->Read("sensors", &names);
-  top->Read("pair", &names);
+  top->Read("pair", &pair);
+  if (!names.empty() && !pair.empty()) top->AddError("pair", "must not stand beside sensors");
+  if (line == PairLine::kChooses && !pair.empty()) names = pair;
   return place.names.empty() && !names.empty()
              ? PlaceOfRig(std::filesystem::path(place.file.string() + "#" + names))
              : place;
@@ -249,7 +252,8 @@ void ReadNamedSensors(const RigPlace& place,
                       SensorEntries* entries,
                       Rig* rig,
                       LensInRig* lens) {
-  const PairOfEntries pair = ChoosePair(PlaceInFile(place, top), choice, entries);
+  const PairOfEntries pair =
+      ChoosePair(PlaceInFile(place, PairLine::kChooses, top), choice, entries);
   rig->lidar_name = pair.lidar->name;
   rig->camera_name = pair.camera->name;
   const bool is_one_of_several = entries->lidars.size() + entries->cameras.size() > 2;
@@ -269,11 +273,12 @@ void ReadNamedSensors(const RigPlace& place,
 
 }  // namespace
 
-RigSensors ReadRigSensors(RigPlace* place, YamlDocument* document) {
+RigSensors ReadRigSensors(PairLine line, RigPlace* place, YamlDocument* document) {
   YamlSection top(document);
   const SensorEntries entries = ReadSensorEntries(&top);
   document->ThrowIfWrong();
-  *place = PlaceInFile(*place, &top);
+  *place = PlaceInFile(*place, line, &top);
+  document->ThrowIfWrong();
   RequireNames(*place, entries.Names());
   return entries.Names();
 }

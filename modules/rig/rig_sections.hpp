@@ -18,6 +18,6 @@ void ReadRigSections(const RigPlace& place,
 /// meant, the file may say where `place` does not.
 /// @throws std::runtime_error naming file, line and key if those sections are wrong; if `place`
 ///     names a sensor that is none of them.
-RigSensors ReadRigSensors(RigPlace* place, YamlDocument* document);
+RigSensors ReadRigSensors(PairLine line, RigPlace* place, YamlDocument* document);
 
 }  // namespace voqcal

@@ -150,7 +150,7 @@ void RequireOnePiece(const CalibrateRigArgs& args, const RigExtrinsics& result) 
 }
 
 void CalibrateRig(const CalibrateRigArgs& args) {
-  const std::vector<Rig> pairs = LoadPairs(args.rig);
+  const std::vector<Rig> pairs = LoadPairs(args.rig, PairLine::kIsIgnored);
   const RigSensors sensors = SensorsOf(pairs);
   const std::string reference = ReferenceOf(args, sensors);
   RequireFolder(args, pairs);

@@ -206,7 +206,7 @@ int main(int argc, char** argv) {
     } else if (is_channels_only) {
       voqcal::PrintInputChannels(voqcal::LoadPairs(path));
     } else {
-      const std::vector<voqcal::Rig> pairs = voqcal::LoadPairs(path);
+      const std::vector<voqcal::Rig> pairs = voqcal::LoadPairs(path, voqcal::PairLine::kIsIgnored);
       if (pairs.size() == 1) {
         voqcal::PrintRig(pairs.front());
       } else {

@@ -302,6 +302,20 @@ TEST(NamedSensors, TheFileItselfMayNameThoseThatAreMeant) {
   EXPECT_THAT(PairsOfRig(path + "#front,left"), ElementsAre(path + "#front,left"));
 }
 
+TEST(NamedSensors, APairLineIsASessionsAndDoesNotNarrowTheRig) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Write("rig.yaml", Truck() + "pair: rear,left\n");
+  EXPECT_THAT(PairsOfRig(path), ElementsAre(path + "#rear,left"));
+  EXPECT_THAT(PairsOfRig(path, PairLine::kIsIgnored), ::testing::SizeIs(4));
+  EXPECT_EQ(LoadRig(path).lidar_name, "rear");
+  const std::string both =
+      folder.Write("both.yaml", Truck() + "pair: rear,left\nsensors: rear,left,right\n");
+  for (const PairLine line : {PairLine::kChooses, PairLine::kIsIgnored}) {
+    EXPECT_THAT(test::ErrorOf([&] { PairsOfRig(both, line); }),
+                HasSubstr("pair must not stand beside sensors"));
+  }
+}
+
 /// Lines 4 to 6, 7 to 9, and the world in line 10.
 std::string SimulatedTruck() {
   const std::string place = "{quaternion_xyzw: [0, 0, 0, 1], translation_m: [1, 2, 3]}";

@@ -30,6 +30,9 @@ class Module {
   /// True once there will never be work again (the end of a recording): Spin then returns.
   virtual bool IsDone() const { return false; }
 
+  /// No message comes any more and the process will end: waits for what goes on in other threads.
+  virtual void WaitForThreads() {}
+
   /// Publishes the current state again. Called once a second: a lost datagram or a late start
   /// heals.
   virtual void Republish() {}

@@ -96,6 +96,7 @@ void Spin(Bus& bus, Module& module, const std::string& status_channel, const Pro
   Heartbeat heartbeat(bus, module, status_channel, args);
   try {
     RunUntilStopped(bus, module, stop, &heartbeat);
+    module.WaitForThreads();
   } catch (const std::exception& error) {
     heartbeat.Beat(std::string("failed: ") + error.what());
     throw;

@@ -1,4 +1,4 @@
-#include <filesystem>
+#include <stdexcept>
 #include <vector>
 
 #include <spdlog/spdlog.h>
@@ -16,9 +16,17 @@ int main(int argc, char** argv) {
       "RIG_EXTRINSICS."};
   return voqcal::RunProcess(argc, argv, info, [](const voqcal::ProcessArgs& args) {
     const std::vector<voqcal::Rig> pairs = voqcal::LoadPairs(args.rig_path);
+    if (pairs.size() < 2) {
+      throw std::runtime_error(args.rig_path.string() +
+                               ": is one pair, whose own modules calibrate it: tools/up starts "
+                               "them, calibrate takes a recording");
+    }
+    if (!args.session_dir) {
+      throw std::runtime_error(
+          "--session is missing: the folder that has those of the pairs' collectors");
+    }
     voqcal::Bus bus(args.lcm_url.value_or(pairs.front().lcm_url));
-    const std::filesystem::path in_logs = std::filesystem::path("logs") / pairs.front().rig_name;
-    voqcal::RigCalibratorNode node(pairs, &bus, args.session_dir.value_or(in_logs));
+    voqcal::RigCalibratorNode node(pairs, &bus, *args.session_dir);
     voqcal::Spin(bus, node, pairs.front().channels.module_status, args);
     spdlog::info(node.Summary());
   });

@@ -91,6 +91,10 @@ RigCalibratorNode::RigCalibratorNode(const std::vector<Rig>& pairs,
   message_ = ToMessage(JoinSessions(sessions_, "", made_from_));
 }
 
+void RigCalibratorNode::WaitForThreads() {
+  if (work_.valid()) Take(work_.get());
+}
+
 RigCalibratorNode::~RigCalibratorNode() {
   if (!work_.valid()) return;
   try {
@@ -165,8 +169,8 @@ void RigCalibratorNode::Start(std::size_t index) {
   working_on_ = index;
   pair.made_of = {pair.newest->utime, pair.newest->revision, pair.newest->log_sha256};
   // Before that a tree without the others would take the place of an earlier one with them.
-  const bool is_whole = std::none_of(
-      pairs_.begin(), pairs_.end(), [](const Pair& each) { return each.IsWaiting(); });
+  const bool is_whole =
+      std::none_of(pairs_.begin(), pairs_.end(), [](const Pair& each) { return each.IsWaiting(); });
   work_ = std::async(
       std::launch::async,
       [this,

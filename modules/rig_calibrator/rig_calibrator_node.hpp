@@ -43,6 +43,7 @@ class RigCalibratorNode : public Module {
   bool Step() override;
   std::optional<std::chrono::steady_clock::time_point> NextStep() const override;
   void Republish() override;
+  void WaitForThreads() override;
 
  private:
   /// Encoded messages by channel.

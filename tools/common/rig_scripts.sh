@@ -30,6 +30,7 @@ read_programs() {  # RIG
     case "$module" in *_driver) drivers+=("$name") ;; *) readers+=("$name") ;; esac
   done <<<"$lines"
 }
+folders() { printf '%s\n' "${folder_of[@]}" | sort -u; }  # each once; their names have no spaces
 has_several_sensors() { [ ${#drivers[@]} -gt 2 ]; }  # after read_programs
 
 fail() {  # MESSAGE [STATUS]
@@ -46,14 +47,17 @@ is_running() {  # SESSION: its supervisor answers; one that was killed leaves so
 }
 
 # Processes of a session whose supervisor was killed: they go on by themselves. Their numbers, those that the
-# supervisor wrote down, if they are still of this session.
+# supervisor wrote down, if they are still of this session: they are told its folder, a pair's in it, or the recording.
 orphans_of() {  # SESSION
   local pid arg
   [ -f "$1/supervisord.log" ] && ! is_running "$1" || return 0
   for pid in $(sed -n "s/.* spawned: '.*' with pid \([0-9]*\)$/\1/p" "$1/supervisord.log"); do
     [ -r "/proc/$pid/cmdline" ] || continue
     while IFS= read -r -d '' arg; do
-      if [[ "$arg" = "$1" || "$arg" = "$1"/* ]]; then echo "$pid"; break; fi
+      if [[ "$arg" = "$1" ]] || { [ "${arg%/*}" = "$1" ] && { [ -d "$arg" ] || [[ "${arg##*/}" = raw*.lcm ]]; }; }; then
+        echo "$pid"
+        break
+      fi
     done <"/proc/$pid/cmdline" || true
   done
 }

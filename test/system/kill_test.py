@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Kills (SIGKILL) modules of a live session at random moments, many sessions over. Each must end with the
 result of an undisturbed one: extrinsic.yaml (of several sensors every pair's, and rig_extrinsics.yaml) byte
-for byte, every accepted sample on the disk, no file half-written. Of several sensors, also an undisturbed
-session must end with what calibrate_rig makes of its recording, and one whose drivers were killed (what these did
-not send is missing) with that alone. The sessions run recorded, under tools/run_rig, each in a network namespace of
+for byte, every accepted sample on the disk, no file half-written. Of several sensors, an undisturbed session must
+end live with what calibrate_rig makes of its recording; drivers are not killed there (what they do not send would be
+missing); the live result of a session whose rig_calibrator was killed, the first to be, must be the same, and each
+live result is of the samples that are on the disk. The sessions run recorded, under tools/run_rig, each in a network namespace of
 its own.
 
     test/system/kill_test.py RIG --out DIR --kills 50 --seed 1
@@ -11,6 +12,7 @@ its own.
 
 import argparse
 import collections
+import hashlib
 import os
 import pathlib
 import random
@@ -59,10 +61,11 @@ def accepted_ids(recording):
     return ids
 
 
-def results_of(folder):
+def results_of(folder, ending=""):
     """The bytes of every result file, by name."""
-    names = ["extrinsic.yaml", "rig_extrinsics.yaml", "*/extrinsic.yaml"]
-    return {str(path.relative_to(folder)): path.read_bytes() for name in names for path in folder.glob(name)}
+    names = [f"{name}{ending}.yaml" for name in ("extrinsic", "rig_extrinsics", "*/extrinsic")]
+    return {str(path.relative_to(folder)).replace(ending + ".yaml", ".yaml"): path.read_bytes()
+            for name in names for path in folder.glob(name)}
 
 
 def kept_ids(samples_log):
@@ -107,6 +110,21 @@ def results_of_recording(rig, session):
     frames = collections.Counter(channel for channel, _ in log_events(session / "raw.lcm")
                                  if channel.startswith(("LIDAR_POINTS", "CAMERA_IMAGE")))
     return results_of(offline), frames
+
+
+def live_problems_of(session, killed):
+    """The same of what was there before run_rig made the results again, of several sensors: those are calibrate_rig's."""
+    live = results_of(session, "_live")
+    if "rig_extrinsics.yaml" not in live:
+        return ["no live result"]
+    problems = []
+    if killed == {"rig_calibrator"} and live != results_of(session):  # it alone misses nothing
+        problems.append("another live result than its recording gives")
+    for name, result in live.items():
+        samples = session / pathlib.Path(name).parent / "samples_live.lcm"
+        if samples.exists() and hashlib.sha256(samples.read_bytes()).hexdigest().encode() not in result:
+            problems.append(f"the live {name} is of other samples")
+    return problems
 
 
 def problems_of(session, status, expected):
@@ -158,6 +176,9 @@ def main():
     parser.add_argument("--module", help="just this one")
     args = parser.parse_args()
     modules = programs_of(args.rig)
+    is_rig = "rig_calibrator" in modules
+    if is_rig:
+        modules = [module for module in modules if "_driver" not in module]
     if args.module and args.module not in modules:
         parser.error(f"--module must be one of {', '.join(modules)}")
     rng = random.Random(args.seed)
@@ -166,6 +187,8 @@ def main():
     expected, duration = run_undisturbed(args.rig, args.out / "undisturbed")
 
     order = [args.module] if args.module else rng.sample(modules, len(modules))
+    if is_rig:
+        order.sort(key=lambda module: module != "rig_calibrator")
     next_kill = num_killed = num_good = 0
     while num_killed < args.kills:
         kills = []
@@ -185,12 +208,9 @@ def main():
         if not any(are_killed):
             continue  # a driver that had ended: at another moment
         num_killed += 1
-        is_driver_killed = any(is_killed and "_driver" in module
-                               for (module, _), is_killed in zip(kills, are_killed))
-        wanted = expected
-        if is_driver_killed and "rig_extrinsics.yaml" in expected:
-            wanted, _ = results_of_recording(args.rig, session)
-        problems = problems_of(session, run.returncode, wanted)
+        problems = problems_of(session, run.returncode, expected)
+        if is_rig:
+            problems += live_problems_of(session, {module for module, _ in kills})
         num_good += not problems
         told = ", ".join(f"{module} after {delay:.2f} s" for module, delay in kills)
         print(f"{num_killed}: {told}: {'; '.join(problems) or 'the same result'}", flush=True)

@@ -217,7 +217,6 @@ TEST(StatusPage, KeepsTheLastFiveEvents) {
                     Not(HasSubstr("sample 1\n"))));
 }
 
-// Of all modules, with more faults and events than have room.
 TEST(StatusPage, ShowsThePairsOfARigAndWhatHelpsThemNext) {
   StatusPage page(PlanOfPair({}), {}, At(0));
   rig_extrinsics_t rig{};
@@ -249,6 +248,7 @@ TEST(StatusPage, ShowsThePairsOfARigAndWhatHelpsThemNext) {
   EXPECT_THAT(page.Text(At(1)), HasSubstr("rig     no tree yet: no pair joins these parts"));
 }
 
+// Of all modules, with more faults and events than have room.
 TEST(StatusPage, FitsATerminalOf24Rows) {
   StatusPage page(PlanOfPair({}), AllModuleNames(), At(0));
   for (const std::string& module : AllModuleNames()) {

@@ -159,7 +159,6 @@ void RigCalibratorNode::Start(std::size_t index) {
        message = *pair.newest,
        samples = std::move(samples),
        sessions = sessions_]() mutable {
-        if (message.is_finished == 0) GiveWay();
         sessions[index] = chain->Calibrate(message, samples);
         Outcome outcome = {sessions[index], chain->said, JoinSessions(sessions, "", made_from_)};
         WriteResult(result_file_, outcome.rig);

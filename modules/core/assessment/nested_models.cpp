@@ -32,7 +32,8 @@ bool HalvesTheError(const FaultFit& before, const FaultFit& fit) {
 }
 
 // The result is wrong by a cause that moves it beyond its interval; by one that the rotation makes
-// good, only if lidar points land elsewhere in the image, too.
+// good, only if lidar points land elsewhere in the image, too, or if it turns by more than
+// calibrations of one camera differ by.
 void WeighMove(const Suspect& suspect,
                const Vector6d& move,
                const FaultFit& fit,
@@ -42,8 +43,9 @@ void WeighMove(const Suspect& suspect,
   finding->must_be_mended = finding->moved_intervals > 1;
   finding->text += MoveText(move, result.covariance);
   if (!suspect.trades_rotation || !finding->must_be_mended) return;
+  constexpr double kMostTurnRad = 0.0122;  // 0.7 degrees
   const Landing landing = LandingOf(CameraWith(fit, result.camera), move, result);
-  finding->must_be_mended = landing.intervals > 1;
+  finding->must_be_mended = landing.intervals > 1 || move.head<3>().norm() > kMostTurnRad;
   finding->text += Format(
       ", and lidar points in the image by %.1f px, %.1f times%s",
       landing.px,
@@ -179,6 +181,29 @@ void SayWhatCouldHide(const std::vector<Candidate>& candidates,
   for (const Hidden& hidden : worst) diagnosis->not_judged.push_back(hidden.text);
 }
 
+// The turn that every fit has is what a wrong principal point does, and takes it up: it is asked
+// whether that explains the samples where nothing else has taken the turn out.
+bool ExplainTheTurn(const std::vector<FaultEquation>& equations,
+                    const std::vector<FaultParameter>& fitted,
+                    const JudgedResult& result,
+                    const DiagnosisOptions& options,
+                    Diagnosis* diagnosis) {
+  std::vector<FaultParameter> faults;
+  for (const FaultParameter fault : fitted) {
+    if (fault == kPrincipalX) return false;  // is found already
+    if (fault != kChessboardTurnX && fault != kChessboardTurnY) faults.push_back(fault);
+  }
+  const FaultFit before = FitFaults(equations, faults);
+  Candidate candidate{PrincipalPoint(result.camera), {}};
+  faults.insert(faults.end(), candidate.suspect.faults.begin(), candidate.suspect.faults.end());
+  candidate.fit = FitFaults(equations, faults);
+  if (!before.is_usable || !candidate.fit.is_usable) return false;
+  candidate.gain = candidate.fit.log_likelihood - before.log_likelihood;
+  if (!IsWorthAWord(candidate, before, result.covariance, options)) return false;
+  diagnosis->findings.push_back(MakeFinding(candidate, before, result));
+  return true;
+}
+
 }  // namespace
 
 void JudgeModels(const std::vector<FaultEquation>& equations,
@@ -217,6 +242,13 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
       if (best == nullptr || candidate.gain > best->gain) best = &candidate;
     }
     if (best == nullptr) {
+      if (ExplainTheTurn(equations, fitted, result, options, diagnosis)) {
+        const auto is_of_it = [](const Candidate& each) {
+          return each.suspect.cause == kPrincipalPointCause;
+        };
+        candidates.erase(std::remove_if(candidates.begin(), candidates.end(), is_of_it),
+                         candidates.end());
+      }
       SayWhatIsOpen(open_groups, diagnosis);
       SayWhatCouldHide(candidates, result.covariance, diagnosis);
       return;

@@ -32,28 +32,6 @@ Suspect FocalLength(const char* cause,
   return {cause, "focal length", {fault}, false, 100, "%", claim, remedy};
 }
 
-Suspect PrincipalPoint(const CameraModel& camera) {
-  const Say claim = [](const FaultFit& fit) {
-    return Format(
-        "the true principal point lies %.1f px right and %.1f px below that given (+- %.1f)",
-        fit.Value(kPrincipalX),
-        fit.Value(kPrincipalY),
-        std::hypot(fit.StandardError(kPrincipalX), fit.StandardError(kPrincipalY)));
-  };
-  const Say remedy = [camera](const FaultFit& fit) {
-    const CameraModel mended = CameraWith(fit, camera);
-    return Format("camera.cx_px: %.1f, cy_px: %.1f", mended.cx_px, mended.cy_px);
-  };
-  return {"principal point",
-          "principal point",
-          {kPrincipalX, kPrincipalY},
-          true,
-          1,
-          "px",
-          claim,
-          remedy};
-}
-
 Suspect Coefficient(int i, const CameraModel& camera) {
   const auto fault = static_cast<FaultParameter>(kDistortion + i);
   const double given = camera.distortion[static_cast<std::size_t>(i)];
@@ -127,6 +105,28 @@ Suspect RangeOffset() {
 }
 
 }  // namespace
+
+Suspect PrincipalPoint(const CameraModel& camera) {
+  const Say claim = [](const FaultFit& fit) {
+    return Format(
+        "the true principal point lies %.1f px right and %.1f px below that given (+- %.1f)",
+        fit.Value(kPrincipalX),
+        fit.Value(kPrincipalY),
+        std::hypot(fit.StandardError(kPrincipalX), fit.StandardError(kPrincipalY)));
+  };
+  const Say remedy = [camera](const FaultFit& fit) {
+    const CameraModel mended = CameraWith(fit, camera);
+    return Format("camera.cx_px: %.1f, cy_px: %.1f", mended.cx_px, mended.cy_px);
+  };
+  return {kPrincipalPointCause,
+          kPrincipalPointCause,
+          {kPrincipalX, kPrincipalY},
+          true,
+          1,
+          "px",
+          claim,
+          remedy};
+}
 
 double Suspect::Length(const FaultFit& fit) const {
   double sum = 0;

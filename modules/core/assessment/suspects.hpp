@@ -28,8 +28,11 @@ struct Suspect {
 /// The line of the rig file: "camera.distortion: [-0.44, 0.23, 0, 0, 0]".
 std::string DistortionLine(const CameraModel& camera);
 
-/// Focal lengths, principal point, each distortion coefficient, squares, where the pattern lies on
-/// the plate, the lidar's ranges.
+inline constexpr char kPrincipalPointCause[] = "principal point";
+Suspect PrincipalPoint(const CameraModel& camera);
+
+/// Focal lengths, that principal point, each distortion coefficient, squares, where the pattern
+/// lies on the plate, the lidar's ranges.
 std::vector<Suspect> SuspectsOf(const BoardSpec& board, const CameraModel& camera);
 
 }  // namespace voqcal

@@ -121,6 +121,15 @@ TEST_F(LiveRig, WhatCannotBeEndsInALine) {
       folder_.Write("two_worlds.yaml", test::Replaced(text, "pattern: vlp16", "seed: 2"));
   EXPECT_THAT(error_of(two_worlds), HasSubstr("lidars.bumper.simulation.seed is not a known key"));
   EXPECT_THAT(test::NamesIn(folder_.path()), Not(Contains("session")));
+  const auto error_of_calibrator = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), test::Program("rig_calibrator"));
+    const test::Outcome outcome = test::Run(arguments);
+    EXPECT_EQ(outcome.status, 1);
+    return outcome.err;
+  };
+  EXPECT_THAT(error_of_calibrator({"--rig", rig_ + "#roof,left", "--session", session_}),
+              HasSubstr("is one pair, whose own modules calibrate it"));
+  EXPECT_THAT(error_of_calibrator({"--rig", rig_}), HasSubstr("--session is missing"));
 }
 
 // Of an undisturbed session, of one whose calibrator is killed and of one that loses a detector or

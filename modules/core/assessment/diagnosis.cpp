@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/assessment/fault_model.hpp"
+#include "core/assessment/fault_fit.hpp"
 #include "core/assessment/judge_outline.hpp"
 #include "core/assessment/judge_questions.hpp"
 #include "core/assessment/judged_result.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <array>
-#include <string>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -42,7 +41,8 @@ enum ResidualKind : int {
   kCorner,  ///< A corner's x or y from where the board's pose puts it, pixels.
   kNumResidualKinds
 };
-using NoiseLevels = std::array<double, kNumResidualKinds>;
+
+using FaultVector = Eigen::Matrix<double, kNumFaultParameters, 1>;
 
 constexpr int kNumExtrinsicParameters = 6;  // [rotation_rad; translation_m], left (camera) side
 constexpr int kNumModelParameters = kNumExtrinsicParameters + kNumFaultParameters;
@@ -71,6 +71,11 @@ struct FaultEquation {
 
 ResidualKind KindOfRow(int row);
 
+/// The camera that was given, as it truly is if it has these faults.
+CameraModel CameraWith(const FaultVector& fault, const CameraModel& given);
+/// The board.
+BoardSpec BoardWith(const FaultVector& fault, const BoardSpec& given);
+
 /// @param T_camera_lidar  near the truth: residuals are taken to be linear about it.
 /// @return one equation a sample. Without corner pixels (features read from a table) the columns of
 ///     the faults of camera and pattern are zero: nothing can be said of them.
@@ -78,38 +83,5 @@ std::vector<FaultEquation> MakeFaultEquations(const std::vector<const BoardSampl
                                               const BoardSpec& board,
                                               const CameraModel& camera,
                                               const Eigen::Isometry3d& T_camera_lidar);
-
-/// The extrinsic fitted together with some faults.
-struct FaultFit {
-  bool is_usable = false;                        ///< False if the samples leave a parameter open.
-  ModelVector value = ModelVector::Zero();       ///< Zero where not fitted.
-  ModelMatrix covariance = ModelMatrix::Zero();  ///< The same.
-  NoiseLevels noise{};
-  double log_likelihood = 0;              ///< With these noise levels, but for a constant.
-  double mean_error_m = 0;                ///< Of the centres, in space.
-  std::vector<double> held_out_errors_m;  ///< The same, each sample left out of the fit in turn.
-  double mean_held_out_error_m = 0;
-
-  std::array<double, kNumResidualKinds> squares{};  ///< Sums of squares by kind.
-
-  double Value(FaultParameter fault) const { return value[kNumExtrinsicParameters + fault]; }
-  double StandardError(FaultParameter fault) const;
-  /// How the extrinsic moves for each unit that the fault is larger: the samples tell their sum.
-  Vector6d ExtrinsicBy(FaultParameter fault) const;
-};
-
-/// The camera that was given, as `fit` says that it truly is.
-CameraModel CameraWith(const FaultFit& fit, const CameraModel& given);
-/// The board.
-BoardSpec BoardWith(const FaultFit& fit, const BoardSpec& given);
-
-/// Least squares with noise levels of their own for each kind of residual, estimated together with
-/// the parameters, which are the extrinsic and `faults`. The chessboards' turn has the prior that
-/// the result gives it.
-FaultFit FitFaults(const std::vector<FaultEquation>& equations,
-                   const std::vector<FaultParameter>& faults);
-
-/// How far each sample's centre stays off in space under `fit`, metres, in order.
-std::vector<double> CentreErrorsM(const std::vector<FaultEquation>& equations, const FaultFit& fit);
 
 }  // namespace voqcal

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/assessment/diagnosis.hpp"
-#include "core/assessment/fault_model.hpp"
+#include "core/assessment/fault_fit.hpp"
 #include "core/assessment/judged_result.hpp"
 
 namespace voqcal {

@@ -43,9 +43,8 @@ void WeighMove(const Suspect& suspect,
   finding->must_be_mended = finding->moved_intervals > 1;
   finding->text += MoveText(move, result.covariance);
   if (!suspect.trades_rotation || !finding->must_be_mended) return;
-  constexpr double kMostTurnRad = 0.0122;  // 0.7 degrees
-  const Landing landing = LandingOf(CameraWith(fit, result.camera), move, result);
-  finding->must_be_mended = landing.intervals > 1 || move.head<3>().norm() > kMostTurnRad;
+  const Landing landing = LandingOf(CameraWith(fit.Faults(), result.camera), move, result);
+  finding->must_be_mended = landing.intervals > 1 || move.head<3>().norm() > kMostCameraTurnRad;
   finding->text += Format(
       ", and lidar points in the image by %.1f px, %.1f times%s",
       landing.px,
@@ -120,12 +119,31 @@ bool IsWorthAWord(const Candidate& candidate,
           IntervalsOf(MoveBetween(before, fit), covariance) > options.min_moved_intervals);
 }
 
+bool Contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 // Two digits that count, never as 1.3e+02.
 int DecimalsOf(double value) {
   return std::max(0, 1 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
 }
 
-// A fault as large as the samples allow.
+// As large as the samples allow.
+double LargestSize(const Candidate& candidate, FaultParameter fault) {
+  constexpr double kSigmas = 2.0;
+  return std::abs(candidate.fit.Value(fault)) + kSigmas * candidate.fit.StandardError(fault);
+}
+
+// Whether the samples say no more of it than anyone knows.
+bool IsOpen(const Candidate& candidate) {
+  return std::any_of(candidate.suspect.faults.begin(),
+                     candidate.suspect.faults.end(),
+                     [&candidate](FaultParameter fault) {
+                       return LargestSize(candidate, fault) > candidate.suspect.most;
+                     });
+}
+
+// A fault that the samples do not tell from none.
 struct Hidden {
   std::string group;
   double intervals = 0;  // of the result, that it would move it by
@@ -133,12 +151,10 @@ struct Hidden {
 };
 
 Hidden WhatCouldHide(const Candidate& candidate, const Matrix6d& covariance) {
-  constexpr double kSigmas = 2.0;
   const Suspect& suspect = candidate.suspect;
   Hidden worst;
   for (const FaultParameter fault : suspect.faults) {
-    const double size =
-        std::abs(candidate.fit.Value(fault)) + kSigmas * candidate.fit.StandardError(fault);
+    const double size = LargestSize(candidate, fault);
     const Vector6d move = size * candidate.fit.ExtrinsicBy(fault);
     const double intervals = IntervalsOf(move, covariance);
     if (!(intervals > std::max(worst.intervals, 1.0))) continue;
@@ -159,26 +175,6 @@ void SayWhatIsOpen(const std::vector<std::string>& groups, Diagnosis* diagnosis)
   std::string text;
   for (const std::string& group : groups) text += (text.empty() ? "" : ", ") + group;
   diagnosis->not_judged.push_back(text + ": the samples leave it open");
-}
-
-// Of each group the worst that could.
-void SayWhatCouldHide(const std::vector<Candidate>& candidates,
-                      const Matrix6d& covariance,
-                      Diagnosis* diagnosis) {
-  std::vector<Hidden> worst;
-  for (const Candidate& candidate : candidates) {
-    const Hidden hidden = WhatCouldHide(candidate, covariance);
-    if (hidden.text.empty()) continue;
-    const auto of_group = std::find_if(worst.begin(), worst.end(), [&hidden](const Hidden& each) {
-      return each.group == hidden.group;
-    });
-    if (of_group == worst.end()) {
-      worst.push_back(hidden);
-    } else if (hidden.intervals > of_group->intervals) {
-      *of_group = hidden;
-    }
-  }
-  for (const Hidden& hidden : worst) diagnosis->not_judged.push_back(hidden.text);
 }
 
 // The turn that every fit has is what a wrong principal point does, and takes it up: it is asked
@@ -204,6 +200,69 @@ bool ExplainTheTurn(const std::vector<FaultEquation>& equations,
   return true;
 }
 
+/// Every suspect that may be added to a fit, tried.
+struct Round {
+  std::vector<Candidate> candidates;     // that have a fit
+  std::vector<std::string> open_groups;  // of which the samples say nothing
+};
+
+Round TryEach(const std::vector<FaultEquation>& equations,
+              const std::vector<Suspect>& suspects,
+              const std::vector<FaultParameter>& fitted,
+              const FaultFit& now) {
+  Round round;
+  for (const Suspect& suspect : suspects) {
+    std::vector<FaultParameter> faults = fitted;
+    faults.insert(faults.end(), suspect.faults.begin(), suspect.faults.end());
+    Candidate candidate{suspect, FitFaults(equations, faults)};
+    candidate.gain = candidate.fit.log_likelihood - now.log_likelihood;
+    const bool is_open = !candidate.fit.is_usable || IsOpen(candidate);
+    if (is_open && !Contains(round.open_groups, suspect.group)) {
+      round.open_groups.push_back(suspect.group);
+    }
+    if (candidate.fit.is_usable) round.candidates.push_back(candidate);
+  }
+  return round;
+}
+
+// Of each group the worst that could, but for those that are open.
+void SayWhatCouldHide(const Round& round, const Matrix6d& covariance, Diagnosis* diagnosis) {
+  std::vector<Hidden> worst;
+  for (const Candidate& candidate : round.candidates) {
+    const Hidden hidden = WhatCouldHide(candidate, covariance);
+    if (hidden.text.empty() || Contains(round.open_groups, hidden.group)) continue;
+    const auto of_group = std::find_if(worst.begin(), worst.end(), [&hidden](const Hidden& each) {
+      return each.group == hidden.group;
+    });
+    if (of_group == worst.end()) {
+      worst.push_back(hidden);
+    } else if (hidden.intervals > of_group->intervals) {
+      *of_group = hidden;
+    }
+  }
+  for (const Hidden& hidden : worst) diagnosis->not_judged.push_back(hidden.text);
+}
+
+/// The one that helps most of those that are worth a word; null if none is.
+const Candidate* BestOf(const Round& round,
+                        const FaultFit& now,
+                        const Matrix6d& covariance,
+                        const DiagnosisOptions& options) {
+  const Candidate* best = nullptr;
+  for (const Candidate& candidate : round.candidates) {
+    if (!IsWorthAWord(candidate, now, covariance, options)) continue;
+    if (best == nullptr || candidate.gain > best->gain) best = &candidate;
+  }
+  return best;
+}
+
+void Remove(const std::vector<FaultParameter>& faults, std::vector<Suspect>* suspects) {
+  suspects->erase(std::remove_if(suspects->begin(),
+                                 suspects->end(),
+                                 [&faults](const Suspect& each) { return each.faults == faults; }),
+                  suspects->end());
+}
+
 }  // namespace
 
 void JudgeModels(const std::vector<FaultEquation>& equations,
@@ -212,55 +271,28 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
                  const DiagnosisOptions& options,
                  Diagnosis* diagnosis) {
   FaultFit now = FitFaults(equations, known);
-  std::vector<FaultParameter> fitted = known;
-  std::vector<Suspect> suspects = SuspectsOf(result.board, result.camera);
-  const auto remove_suspects = [&suspects](const std::vector<FaultParameter>& faults) {
-    suspects.erase(std::remove_if(suspects.begin(),
-                                  suspects.end(),
-                                  [&faults](const Suspect& each) { return each.faults == faults; }),
-                   suspects.end());
-  };
-  for (const FaultParameter fault : known) remove_suspects({fault});
-  while (now.is_usable && !suspects.empty()) {
-    std::vector<Candidate> candidates;
-    std::vector<std::string> open_groups;
-    for (const Suspect& suspect : suspects) {
-      std::vector<FaultParameter> faults = fitted;
-      faults.insert(faults.end(), suspect.faults.begin(), suspect.faults.end());
-      Candidate candidate{suspect, FitFaults(equations, faults)};
-      if (candidate.fit.is_usable) {
-        candidate.gain = candidate.fit.log_likelihood - now.log_likelihood;
-        candidates.push_back(candidate);
-      } else if (std::find(open_groups.begin(), open_groups.end(), suspect.group) ==
-                 open_groups.end()) {
-        open_groups.push_back(suspect.group);
-      }
-    }
-    const Candidate* best = nullptr;
-    for (const Candidate& candidate : candidates) {
-      if (!IsWorthAWord(candidate, now, result.covariance, options)) continue;
-      if (best == nullptr || candidate.gain > best->gain) best = &candidate;
-    }
-    if (best == nullptr) {
-      if (ExplainTheTurn(equations, fitted, result, options, diagnosis)) {
-        const auto is_of_it = [](const Candidate& each) {
-          return each.suspect.cause == kPrincipalPointCause;
-        };
-        candidates.erase(std::remove_if(candidates.begin(), candidates.end(), is_of_it),
-                         candidates.end());
-      }
-      SayWhatIsOpen(open_groups, diagnosis);
-      SayWhatCouldHide(candidates, result.covariance, diagnosis);
-      return;
-    }
-    diagnosis->findings.push_back(MakeFinding(*best, now, result));
-    now = best->fit;
-    fitted.insert(fitted.end(), best->suspect.faults.begin(), best->suspect.faults.end());
-    remove_suspects(std::vector<FaultParameter>(best->suspect.faults));
-  }
   if (!now.is_usable) {
     diagnosis->not_judged.push_back("what was given: the samples leave the extrinsic itself open");
+    return;
   }
+  std::vector<FaultParameter> fitted = known;
+  std::vector<Suspect> suspects = SuspectsOf(result.board, result.camera);
+  for (const FaultParameter fault : known) Remove({fault}, &suspects);
+  Round round = TryEach(equations, suspects, fitted, now);
+  while (const Candidate* best = BestOf(round, now, result.covariance, options)) {
+    diagnosis->findings.push_back(MakeFinding(*best, now, result));
+    now = best->fit;
+    const std::vector<FaultParameter> added = best->suspect.faults;
+    fitted.insert(fitted.end(), added.begin(), added.end());
+    Remove(added, &suspects);
+    round = TryEach(equations, suspects, fitted, now);
+  }
+  if (ExplainTheTurn(equations, fitted, result, options, diagnosis)) {
+    Remove(PrincipalPoint(result.camera).faults, &suspects);
+    round = TryEach(equations, suspects, fitted, now);
+  }
+  SayWhatIsOpen(round.open_groups, diagnosis);
+  SayWhatCouldHide(round, result.covariance, diagnosis);
 }
 
 }  // namespace voqcal

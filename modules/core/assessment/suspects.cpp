@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/format.hpp"
 #include "core/units.hpp"
@@ -23,13 +24,14 @@ Suspect FocalLength(const char* cause,
                   fit.Value(fault) < 0 ? "long" : "short");
   };
   const Say remedy = [=](const FaultFit& fit) {
-    const CameraModel mended = CameraWith(fit, camera);
+    const CameraModel mended = CameraWith(fit.Faults(), camera);
     const std::string fx = Format("camera.fx_px: %.1f", mended.fx_px);
     const std::string fy = Format("fy_px: %.1f", mended.fy_px);
     if (fault == kFocalXScale) return fx;
     return fault == kFocalYScale ? "camera." + fy : fx + ", " + fy;
   };
-  return {cause, "focal length", {fault}, false, 100, "%", claim, remedy};
+  constexpr double kMost = 0.2;
+  return {cause, "focal length", {fault}, kMost, false, 100, "%", claim, remedy};
 }
 
 Suspect Coefficient(int i, const CameraModel& camera) {
@@ -42,8 +44,11 @@ Suspect Coefficient(int i, const CameraModel& camera) {
                   fit.StandardError(fault),
                   given);
   };
-  const Say remedy = [=](const FaultFit& fit) { return DistortionLine(CameraWith(fit, camera)); };
-  return {"distortion", "distortion", {fault}, false, 1, "", claim, remedy};
+  const Say remedy = [=](const FaultFit& fit) {
+    return DistortionLine(CameraWith(fit.Faults(), camera));
+  };
+  constexpr double kMost = std::numeric_limits<double>::infinity();
+  return {"distortion", "distortion", {fault}, kMost, false, 1, "", claim, remedy};
 }
 
 Suspect Squares(const BoardSpec& board) {
@@ -54,9 +59,11 @@ Suspect Squares(const BoardSpec& board) {
                   fit.Value(kSquareScale) < 0 ? "large" : "small");
   };
   const Say remedy = [board](const FaultFit& fit) {
-    return Format("board.square_m: %.5f", BoardWith(fit, board).square_m);
+    return Format("board.square_m: %.5f", BoardWith(fit.Faults(), board).square_m);
   };
-  return {"board's squares", "board's squares", {kSquareScale}, false, 100, "%", claim, remedy};
+  constexpr double kMost = 0.3;
+  return {
+      "board's squares", "board's squares", {kSquareScale}, kMost, false, 100, "%", claim, remedy};
 }
 
 Suspect PatternOffset(const BoardSpec& board) {
@@ -69,7 +76,7 @@ Suspect PatternOffset(const BoardSpec& board) {
         kMmPerM * std::hypot(fit.StandardError(kPatternX), fit.StandardError(kPatternY)));
   };
   const Say remedy = [board](const FaultFit& fit) {
-    const BoardSpec mended = BoardWith(fit, board);
+    const BoardSpec mended = BoardWith(fit.Faults(), board);
     return Format("board.pattern_offset_x_m: %.4f, pattern_offset_y_m: %.4f",
                   mended.pattern_offset_x_m,
                   mended.pattern_offset_y_m);
@@ -77,6 +84,7 @@ Suspect PatternOffset(const BoardSpec& board) {
   return {"pattern offset",
           "pattern offset",
           {kPatternX, kPatternY},
+          0.5 * std::min(board.width_m, board.height_m),  // it would leave the plate
           false,
           kMmPerM,
           "mm",
@@ -97,6 +105,7 @@ Suspect RangeOffset() {
   return {"lidar range offset",
           "lidar range offset",
           {kRangeOffset},
+          0.3,
           false,
           kMmPerM,
           "mm",
@@ -115,12 +124,13 @@ Suspect PrincipalPoint(const CameraModel& camera) {
         std::hypot(fit.StandardError(kPrincipalX), fit.StandardError(kPrincipalY)));
   };
   const Say remedy = [camera](const FaultFit& fit) {
-    const CameraModel mended = CameraWith(fit, camera);
+    const CameraModel mended = CameraWith(fit.Faults(), camera);
     return Format("camera.cx_px: %.1f, cy_px: %.1f", mended.cx_px, mended.cy_px);
   };
   return {kPrincipalPointCause,
           kPrincipalPointCause,
           {kPrincipalX, kPrincipalY},
+          0.25 * camera.width_px,
           true,
           1,
           "px",

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "core/assessment/fault_model.hpp"
+#include "core/assessment/fault_fit.hpp"
 
 namespace voqcal {
 
@@ -13,6 +14,8 @@ struct Suspect {
   std::string cause;  ///< One of a few.
   std::string group;  ///< Of suspects that trade with each other: the lens' coefficients, say.
   std::vector<FaultParameter> faults;
+  /// No more is possible, in the parameters' unit: an error that could be larger is open.
+  double most = std::numeric_limits<double>::infinity();
   bool trades_rotation = false;  ///< The extrinsic turns with it, and points land as before.
   double scale = 1.0;            ///< From the first parameter's unit to that of the text.
   std::string unit;

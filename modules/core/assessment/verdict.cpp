@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/assessment/judged_result.hpp"
+#include "core/units.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -21,7 +24,7 @@ constexpr Limits kOverfitRatio{1.5, 3.0};  // 1.1 is common with 30 poses
 constexpr Limits kSigmaDeg{0.05, 0.2};     // 0.05 degrees is 9 mm at 10 m
 constexpr Limits kSigmaMm{3.0, 5.0};       // 95 in 100 are within twice as much: 10 mm
 constexpr Limits kNormalDeg{0.7, 2.0};     // a clean simulated VLP-16 shows about 0.6
-constexpr Limits kTurnDeg{0.7, 2.0};       // of 1000 px, 12 and 35 px of the principal point
+constexpr Limits kTurnDeg{kDegPerRad * kMostCameraTurnRad, 2.0};
 constexpr int kFewestPoses = 6;
 constexpr Limits kNumCells{5, 2};  // of the 9 parts of the image
 constexpr Limits kLeftOutShare{0.15, 0.4};
@@ -107,8 +110,10 @@ void AddChessboardTurn(const Evidence& evidence, std::vector<VerdictCheck>* chec
       evidence.chessboard_turn_deg,
       kTurnDeg,
       "All chessboards are turned by " + Number(evidence.chessboard_turn_deg, 2, "degrees") +
-          " against the rays to them, as by a principal point that is off. This was taken out.",
-      "Check camera.cx_px and cy_px in the rig file (calibrate_lens finds them).",
+          " against the rays to them, as by a principal point or scan lines that are off. This was "
+          "taken out.",
+      "Check camera.cx_px and cy_px in the rig file (calibrate_lens finds them), and the lidar's "
+      "own calibration.",
       checks);
 }
 

@@ -26,14 +26,15 @@ Enough EnoughOf(std::size_t num_used, const Calibration& calibration, const Cali
 
 /// Lens against lens: another method's scores would be compared with the likelihood's.
 LensCorrection LensCorrectionOf(const std::vector<const BoardSample*>& used,
-                                const Calibration& calibration,
+                                const std::vector<MethodTrial>& trials,
+                                const Eigen::Isometry3d& T_camera_lidar,
                                 const CalibrationTask& task) {
-  for (const MethodTrial& trial : calibration.trials) {
+  for (const MethodTrial& trial : trials) {
     if (trial.method != RefineMethod::kLikelihood || !trial.problem.empty()) continue;
     return CorrectLens(used,
                        task.board,
                        task.camera,
-                       calibration.T_camera_lidar,
+                       T_camera_lidar,
                        trial.held_out,
                        task.options.refinement.likelihood);
   }
@@ -87,7 +88,9 @@ Calibration Assess(const ChosenSamples& chosen,
                                         result.T_camera_lidar,
                                         task.options.scene_check);
       },
-      [&] { result.lens_correction = LensCorrectionOf(used, result, task); },
+      [&] {
+        result.lens_correction = LensCorrectionOf(used, result.trials, result.T_camera_lidar, task);
+      },
       [&] {
         result.diagnosis = Diagnose(used,
                                     static_cast<int>(chosen.rejected.size()),

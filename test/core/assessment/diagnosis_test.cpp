@@ -1,11 +1,12 @@
 #include "core/assessment/diagnosis.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/assessment/fault_model.hpp"
+#include "core/assessment/fault_fit.hpp"
 #include "core/camera_detection/planar_pose.hpp"
 #include "core/estimation/refine.hpp"
 #include "core/geometry/rigid.hpp"
@@ -15,11 +16,13 @@ namespace voqcal {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 /// A session of 30 poses with a VLP-16's noise; what was given may differ from what is true.
 class Session {
@@ -49,7 +52,7 @@ class Session {
                     given_board,
                     given_camera,
                     refined.T_camera_lidar,
-                    refined.covariance,
+                    covariance_scale * refined.covariance,
                     range_offset,
                     {});
   }
@@ -69,8 +72,9 @@ class Session {
   CameraModel true_camera = test::TestCamera();
   CameraModel given_camera = test::TestCamera();
   int num_inconsistent = 0;
-  std::size_t num_hidden = 0;  ///< Corners of each board that the camera does not see.
-  BiasEstimate range_offset;   ///< Taken out.
+  double covariance_scale = 1.0;  ///< Of what the result says of itself.
+  std::size_t num_hidden = 0;     ///< Corners of each board that the camera does not see.
+  BiasEstimate range_offset;      ///< Taken out.
 
  private:
   void SeeByCamera(BoardSample* sample, test::Random* random) const {
@@ -104,6 +108,32 @@ TEST(Diagnose, FindsNothingInACleanSession) {
     const Diagnosis diagnosis = Session(options).Run();
     EXPECT_THAT(diagnosis.findings, IsEmpty()) << seed << ": " << diagnosis.findings[0].text;
   }
+}
+
+TEST(Diagnose, SaysOfEachGroupOnceWhatCouldHide) {
+  Session session;
+  session.covariance_scale = 1e-3;  // so sure that anything moves it by more
+  const Diagnosis diagnosis = session.Run();
+  EXPECT_THAT(diagnosis.not_judged, Contains(StartsWith("principal point: an error of ")));
+  EXPECT_THAT(diagnosis.not_judged, Not(Contains(HasSubstr("leave it open"))));
+  const auto num_of = [&diagnosis](const std::string& group) {
+    return std::count_if(diagnosis.not_judged.begin(),
+                         diagnosis.not_judged.end(),
+                         [&group](const auto& text) { return text.rfind(group, 0) == 0; });
+  };
+  EXPECT_EQ(num_of("focal length"), 1);
+  EXPECT_EQ(num_of("distortion"), 1);
+}
+
+// From one place, where the plate ends is not seen: an offset could be as large as the plate.
+TEST(Diagnose, WhatCouldBeLargerThanPossibleIsOpen) {
+  test::SyntheticSamplesOptions options = Session::Noisy();
+  options.num_samples = 5;
+  options.max_tilt_rad = 0.02;
+  const Diagnosis diagnosis = Session(options).Run();
+  EXPECT_THAT(diagnosis.not_judged,
+              Contains(AllOf(HasSubstr("pattern offset"), HasSubstr("leave it open"))));
+  EXPECT_THAT(diagnosis.not_judged, Not(Contains(StartsWith("pattern offset: an error"))));
 }
 
 TEST(Diagnose, FindsAWrongFocalLength) {

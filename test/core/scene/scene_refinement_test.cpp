@@ -1,5 +1,7 @@
 #include "core/scene/scene_refinement.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -132,6 +134,34 @@ TEST_F(RefineBySceneTest, SurprisesHaveTheirNumericDerivatives) {
     }
   }
   EXPECT_GE(num_compared, 7 * 19);
+}
+
+TEST_F(RefineBySceneTest, SurprisesOfManyEdgesAreThoseOfEach) {
+  const CameraModel camera = Camera();
+  const std::vector<EdgeField> fields = MakeEdgeFields(*views_, 6.0);
+  const auto all = SceneEdgesInView(*views_, camera, test::TestExtrinsic());
+  ASSERT_GT(all.size(), 200U);  // more than are looked up at once
+  std::vector<const SceneEdge*> edges;
+  for (const SceneEdge& edge : all) edges.push_back(&edge);
+  std::vector<EdgeField::Patch> patches(edges.size());
+  for (const double turn_rad :
+       {0.0, 0.002, -0.3}) {  // patches move, and some edges leave the image
+    const LeftPerturbation at(test::TestExtrinsic(), turn_rad * Vector6d::Unit(1));
+    const EdgeLookup lookup{fields, camera, at, 0.001};
+    std::vector<double> together(edges.size());
+    std::vector<double> J_together(kSceneParameters * edges.size());
+    SurprisesAt(
+        edges.data(), edges.size(), lookup, patches.data(), together.data(), J_together.data());
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      double alone = 0;
+      std::array<double, kSceneParameters> J_alone{};
+      SurprisesAt(&edges[i], 1, lookup, nullptr, &alone, J_alone.data());
+      ASSERT_EQ(together[i], alone) << i;
+      ASSERT_TRUE(
+          std::equal(J_alone.begin(), J_alone.end(), J_together.data() + kSceneParameters * i))
+          << i;
+    }
+  }
 }
 
 TEST(SceneRefinementOptions, NamesEachProblem) {

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include <spdlog/spdlog.h>
 
 #include "core/add_if_new.hpp"
 #include "core/format.hpp"
-#include "core/geometry/rigid.hpp"
-#include "core/sensor_network/common_boards.hpp"
 #include "core/units.hpp"
 
 namespace voqcal {
@@ -18,35 +15,13 @@ namespace {
 /// Where a turn and a shift are weighed against one another.
 constexpr double kTypicalRangeM = 5.0;
 
-/// A pose that is in the list already would count twice.
-bool IsNew(const BoardPose& pose,
-           const std::vector<CommonBoard>& boards,
-           const SamplePickerOptions& options) {
-  return std::none_of(boards.begin(), boards.end(), [&](const CommonBoard& each) {
-    return (each.from.centre_m - pose.centre_m).norm() < options.min_new_distance_m &&
-           AngleBetween(each.from.normal, pose.normal) < options.min_new_angle_rad;
-  });
-}
-
-/// Adds the poses that both cameras saw at one time. Each session's board was at rest.
-void AddCommon(const std::vector<SeenBoard>& from,
-               const std::vector<SeenBoard>& to,
-               const SamplePickerOptions& options,
-               std::vector<CommonBoard>* boards) {
-  for (const SeenBoard& each : from) {
-    for (const SeenBoard& other : to) {
-      const double apart_s =
-          1e-6 * static_cast<double>(std::abs(each.camera_utime - other.camera_utime));
-      if (apart_s > options.max_pair_offset_s || !IsNew(each.pose, *boards, options)) continue;
-      boards->push_back({each.pose, other.pose});
-    }
-  }
-}
-
 /// Two cameras, by what their sessions have in common; nothing if that is too little.
 std::optional<CalibratedPair> CalibrateCameras(const PairSession& from,
                                                const PairSession& to,
                                                const std::vector<PairSession>& sessions) {
+  const CommonBoardLimits limits{from.sampling.max_pair_offset_s,
+                                 from.sampling.min_new_distance_m,
+                                 from.sampling.min_new_angle_rad};
   std::vector<CommonBoard> boards;
   bool is_of_two_times = false;
   for (const PairSession& each : sessions) {
@@ -56,7 +31,7 @@ std::optional<CalibratedPair> CalibrateCameras(const PairSession& from,
         is_of_two_times = true;
         continue;
       }
-      AddCommon(each.boards, other.boards, from.sampling, &boards);
+      AddCommonBoards(each.boards, other.boards, limits, &boards);
     }
   }
   if (is_of_two_times) {

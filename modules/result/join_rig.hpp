@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,16 +7,11 @@
 #include "core/board/board_sample.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/sampling/sample_picker.hpp"
+#include "core/sensor_network/common_boards.hpp"
 #include "result/result_file.hpp"
 #include "result/rig_extrinsics.hpp"
 
 namespace voqcal {
-
-/// A pose of the board in a session, as its camera saw it.
-struct SeenBoard {
-  std::int64_t camera_utime = 0;
-  BoardPose pose;
-};
 
 /// A lidar and a camera of a rig, and what there is of their own session.
 struct PairSession {

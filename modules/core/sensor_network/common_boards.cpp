@@ -1,12 +1,42 @@
 #include "core/sensor_network/common_boards.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/estimation/variance_components.hpp"
+#include "core/geometry/rigid.hpp"
 #include "core/least_samples.hpp"
 
 namespace voqcal {
+namespace {
+
+bool IsNew(const BoardPose& pose,
+           const std::vector<CommonBoard>& boards,
+           const CommonBoardLimits& limits) {
+  return std::none_of(boards.begin(), boards.end(), [&](const CommonBoard& each) {
+    return (each.from.centre_m - pose.centre_m).norm() < limits.min_new_distance_m &&
+           AngleBetween(each.from.normal, pose.normal) < limits.min_new_angle_rad;
+  });
+}
+
+}  // namespace
+
+void AddCommonBoards(const std::vector<SeenBoard>& from,
+                     const std::vector<SeenBoard>& to,
+                     const CommonBoardLimits& limits,
+                     std::vector<CommonBoard>* boards) {
+  for (const SeenBoard& each : from) {
+    for (const SeenBoard& other : to) {
+      const double apart_s =
+          1e-6 * static_cast<double>(std::abs(each.camera_utime - other.camera_utime));
+      if (apart_s > limits.max_apart_s || !IsNew(each.pose, *boards, limits)) continue;
+      boards->push_back({each.pose, other.pose});
+    }
+  }
+}
+
 std::optional<SensorPair> PairOfCameras(const std::string& from,
                                         const std::string& to,
                                         const std::vector<CommonBoard>& boards,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,11 +11,31 @@
 
 namespace voqcal {
 
+/// A pose of the board at rest, as one camera saw it.
+struct SeenBoard {
+  std::int64_t camera_utime = 0;
+  BoardPose pose;
+};
+
 /// One pose of the board, as two cameras of a rig saw it, each in its own frame.
 struct CommonBoard {
   BoardPose from;
   BoardPose to;
 };
+
+/// When two cameras saw one pose, and when that is another than those before: as of samples.
+struct CommonBoardLimits {
+  double max_apart_s = 0.0;
+  double min_new_distance_m = 0.0;
+  double min_new_angle_rad = 0.0;
+};
+
+/// Adds the poses that both saw at one time, but for those that `boards` has: these would count
+/// twice.
+void AddCommonBoards(const std::vector<SeenBoard>& from,
+                     const std::vector<SeenBoard>& to,
+                     const CommonBoardLimits& limits,
+                     std::vector<CommonBoard>* boards);
 
 /// How two cameras stand to each other, by the boards that both saw: FitWithErrors, as of a lidar
 /// and a camera, with a camera's errors. No lidar has a part in it, so it is much sharper than what

@@ -77,6 +77,28 @@ TEST(PairOfCameras, IsNearlyTheSameTheOtherWayRound) {
   }
 }
 
+TEST(AddCommonBoards, TakesWhatBothSawAtOneTimeOnce) {
+  const auto seen = [](std::int64_t utime, double x_m) {
+    SeenBoard board;
+    board.camera_utime = utime;
+    board.pose.centre_m = {x_m, 0.0, 3.0};
+    board.pose.normal = -Eigen::Vector3d::UnitZ();
+    return board;
+  };
+  const CommonBoardLimits limits{0.05, 0.1, 0.1};
+  std::vector<CommonBoard> boards;
+  AddCommonBoards({seen(0, 0.0), seen(1000000, 1.0), seen(2000000, 1.01)},
+                  {seen(40000, 5.0), seen(1100000, 6.0), seen(2000000, 7.0)},
+                  limits,
+                  &boards);
+  ASSERT_EQ(boards.size(), 2U);  // the second is 0.1 s apart
+  EXPECT_EQ(boards[0].to.centre_m.x(), 5.0);
+  EXPECT_EQ(boards[1].from.centre_m.x(), 1.01);
+  // Another pair of sessions saw the first pose again.
+  AddCommonBoards({seen(9000000, 0.05)}, {seen(9000000, 5.0)}, limits, &boards);
+  EXPECT_EQ(boards.size(), 2U);
+}
+
 TEST(PairOfCameras, NeedsThreeBoards) {
   EXPECT_FALSE(PairOfCameras("left", "right", Boards(2, 1), test::TestCamera()));
 }

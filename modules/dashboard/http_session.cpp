@@ -1,5 +1,6 @@
 #include "dashboard/http_session.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -50,7 +51,9 @@ HttpResponse Give(const std::string& name, const StaticFile& file) {
   if (file.is_one_file) response.set(kContentPolicy, kOneFilePolicy);
   response.set(http::field::content_type, file.content_type);
   if (file.is_download) {
-    response.set(http::field::content_disposition, "attachment; filename=\"" + name + "\"");
+    std::string saved_as = name;
+    std::replace(saved_as.begin(), saved_as.end(), '/', '_');
+    response.set(http::field::content_disposition, "attachment; filename=\"" + saved_as + "\"");
   }
   response.body() = file.bytes;
   return response;
@@ -93,8 +96,10 @@ HttpResponse AnswerUnsealed(const HttpRequest& request, const Hub& hub) {
   if (file != hub.options.files.end()) return Give(path, file->second);
   if (path.compare(0, sizeof(kExports) - 1, kExports) == 0) {
     const std::string name = path.substr(sizeof(kExports) - 1);
-    const auto exported = hub.exports.find(name);
-    if (exported != hub.exports.end()) return Give(name, exported->second);
+    for (const PairInHub& pair : hub.pairs) {
+      const auto exported = pair.exports.find(name);
+      if (exported != pair.exports.end()) return Give(name, exported->second);
+    }
   }
   return Plain(http::status::not_found, "there is nothing here");
 }

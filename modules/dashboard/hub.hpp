@@ -19,8 +19,8 @@ namespace voqcal {
 class Page {
  public:
   virtual ~Page() = default;
-  /// This slot has a new frame in the hub.
-  virtual void HasNew(Slot slot) = 0;
+  /// This slot of this pair has a new frame in the hub.
+  virtual void HasNew(Slot slot, std::size_t pair) = 0;
 };
 
 /// Commands on their way from the server's thread to the module's.
@@ -54,13 +54,22 @@ class CommandList {
   std::int64_t num_refused_ = 0;
 };
 
-/// What the server's connections share. For the server's thread alone, but for the commands and the
-/// count of pages.
-struct Hub {
-  ServerOptions options;
-  CommandList commands;
+/// What there is to show of a pair.
+struct PairInHub {
   std::array<FramePtr, kNumSlots> newest;
   std::map<std::string, StaticFile> exports;
+  std::atomic<int> num_pages{0};
+};
+
+/// What the server's connections share. For the server's thread alone, but for the commands and the
+/// counts of pages.
+struct Hub {
+  explicit Hub(const ServerOptions& options_in)
+      : options(options_in), pairs(options.pairs.size()) {}
+
+  ServerOptions options;
+  CommandList commands;
+  std::vector<PairInHub> pairs;
   std::set<Page*> pages;
   int num_requests = 0;  ///< That are being read or answered.
   std::atomic<int> num_pages{0};

@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "core/sensor_network/sensor_pair.hpp"
 #include "dashboard/access.hpp"
 #include "dashboard/dashboard_node.hpp"
 #include "dashboard/page_files.hpp"
@@ -60,13 +61,10 @@ std::vector<ip::address> ReachableAt(const ip::address& address) {
   return all;
 }
 
-/// What makes the session's report, by the rig that the session is of. (With tools/up that is a
-/// copy: what is changed in the rig file since counts for the next session.)
 std::vector<std::string> ReportCommand(const std::filesystem::path& session,
                                        const std::filesystem::path& rig_path) {
   const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "report";
-  const std::filesystem::path own = session / "rig.yaml";
-  return {program, session, "--rig", std::filesystem::exists(own) ? own : rig_path};
+  return {program, session, "--rig", rig_path};
 }
 
 /// A line each.
@@ -90,9 +88,33 @@ void TellAddresses(const std::string& lines, const std::filesystem::path& file) 
   spdlog::info("the page: {}", isatty(STDERR_FILENO) != 0 ? lines : "see " + file.string());
 }
 
+/// A pair alone has the session to itself; of several each has a folder in it. Their reports are by
+/// the rig that the session is of. (With tools/up that is a copy: what is changed in the rig file
+/// since counts for the next session.)
+std::vector<ShownPair> ShownPairs(const std::vector<Rig>& pairs,
+                                  const std::filesystem::path& session,
+                                  const std::filesystem::path& rig_path) {
+  const std::filesystem::path own = session / "rig.yaml";
+  const bool has_own = std::filesystem::exists(own);
+  if (pairs.size() == 1) {
+    return {{pairs.front(), session, ReportCommand(session, has_own ? own : rig_path)}};
+  }
+  std::vector<ShownPair> shown;
+  for (const Rig& rig : pairs) {
+    const std::filesystem::path folder = session / PairName(rig.lidar_name, rig.camera_name);
+    std::filesystem::create_directories(folder);
+    const std::string pair_of_own = own.string() + "#" + rig.lidar_name + "," + rig.camera_name;
+    shown.push_back({rig, folder, ReportCommand(folder, has_own ? pair_of_own : rig.path.string())});
+  }
+  return shown;
+}
+
 void Run(const ProcessArgs& args) {
-  const Rig rig = LoadRig(args.rig_path);
-  const std::filesystem::path session = SessionFolder(args.session_dir, rig);
+  const std::vector<Rig> pairs = LoadPairs(args.rig_path);
+  const Rig& rig = pairs.front();
+  const std::filesystem::path session =
+      pairs.size() == 1 ? SessionFolder(args.session_dir, rig)
+                        : args.session_dir.value_or(std::filesystem::path("logs") / rig.rig_name);
   std::filesystem::create_directories(session);
   const std::filesystem::path address_file = session / "dashboard_url.txt";
 
@@ -102,12 +124,20 @@ void Run(const ProcessArgs& args) {
   options.host_name = rig.dashboard.host_name;
   options.token = TokenOfSession(address_file);
   options.files = PageFiles();
+  options.pairs.clear();
+  for (const Rig& each : pairs) {
+    options.pairs.push_back(PairName(each.lidar_name, each.camera_name));
+  }
 
   // The page can be opened before the module hears anything: tools/up waits for the latter only.
   DashboardServer server(options);
   TellAddresses(PageAddresses(rig.dashboard, server, options.token), address_file);
   Bus bus(args.lcm_url.value_or(rig.lcm_url));
-  DashboardNode node(rig, &bus, &server, session, ReportCommand(session, args.rig_path));
+  DashboardNode node(ShownPairs(pairs, session, args.rig_path),
+                     PlanOfRig(args.rig_path, pairs),
+                     &bus,
+                     &server,
+                     session);
   if (!ip::make_address(options.address).is_loopback()) {
     spdlog::warn("the page can be reached over the network, without encryption: {}",
                  options.address);

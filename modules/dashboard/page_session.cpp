@@ -1,5 +1,6 @@
 #include "dashboard/page_session.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -25,18 +26,19 @@ PageSession::PageSession(boost::asio::ip::tcp::socket socket, std::shared_ptr<Hu
     : stream_(std::move(socket)), hub_(std::move(hub)) {
   hub_->pages.insert(this);
   ++hub_->num_pages;
+  ++hub_->pairs[pair_].num_pages;
 }
 
 PageSession::~PageSession() {
   hub_->pages.erase(this);
   --hub_->num_pages;
+  --hub_->pairs[pair_].num_pages;
 }
 
 void PageSession::Start(const beast::http::request<beast::http::empty_body>& upgrade) {
   stream_.read_message_max(kMaxRequestBytes);
   stream_.set_option(websocket::stream_base::timeout{kHandshakeTimeout, kIdleTimeout, true});
-  for (std::size_t slot = 0; slot < kNumSlots; ++slot)
-    has_new_[slot] = hub_->newest[slot] != nullptr;
+  Watch(pair_);
   stream_.async_accept(upgrade, [self = shared_from_this()](beast::error_code error) {
     if (error) return;
     self->SendNext();
@@ -44,7 +46,8 @@ void PageSession::Start(const beast::http::request<beast::http::empty_body>& upg
   });
 }
 
-void PageSession::HasNew(Slot slot) {
+void PageSession::HasNew(Slot slot, std::size_t pair) {
+  if (pair != pair_) return;
   has_new_[static_cast<std::size_t>(slot)] = true;
   if (stream_.is_open()) SendNext();
 }
@@ -68,12 +71,30 @@ void PageSession::Take(const std::string& text) {
       stream_.got_text() ? ParsePageRequest(text) : std::string("a request is a message of text");
   if (!request) {
     refusal_ = Refusal(request.error());
+  } else if (!request->watch.empty()) {
+    const auto& names = hub_->options.pairs;
+    const auto found = std::find(names.begin(), names.end(), request->watch);
+    if (found != names.end()) {
+      Watch(static_cast<std::size_t>(found - names.begin()));
+    } else {
+      refusal_ = Refusal("there is no pair \"" + request->watch + "\"");
+    }
   } else if (request->command.empty()) {
     is_drawing_[static_cast<std::size_t>(request->shown)] = false;
   } else if (!hub_->commands.Add(*request)) {
     refusal_ = Refusal("too many commands wait already: try again");
   }
   SendNext();
+}
+
+void PageSession::Watch(std::size_t pair) {
+  --hub_->pairs[pair_].num_pages;
+  ++hub_->pairs[pair].num_pages;
+  pair_ = pair;
+  for (std::size_t slot = 0; slot < kNumSlots; ++slot) {
+    has_new_[slot] = hub_->pairs[pair_].newest[slot] != nullptr;
+  }
+  last_slot_ = kNumSlots - 1;
 }
 
 void PageSession::SendNext() {
@@ -97,7 +118,7 @@ FramePtr PageSession::NextFrame() {
     has_new_[slot] = false;
     is_drawing_[slot] = IsLarge(static_cast<Slot>(slot));
     last_slot_ = slot;
-    return hub_->newest[slot];
+    return hub_->pairs[pair_].newest[slot];
   }
   return nullptr;
 }

@@ -25,12 +25,14 @@ class PageSession : public Page, public std::enable_shared_from_this<PageSession
   /// Answers the upgrade that the HTTP side has read and let through.
   void Start(const boost::beast::http::request<boost::beast::http::empty_body>& upgrade);
 
-  void HasNew(Slot slot) override;
+  void HasNew(Slot slot, std::size_t pair) override;
 
  private:
   void Read();
   void OnRead(boost::beast::error_code error);
   void Take(const std::string& text);
+  /// Shows a pair from its first slot on.
+  void Watch(std::size_t pair);
   void SendNext();
   FramePtr NextFrame();
 
@@ -42,6 +44,7 @@ class PageSession : public Page, public std::enable_shared_from_this<PageSession
   std::bitset<kNumSlots> has_new_;
   std::bitset<kNumSlots> is_drawing_;  ///< Large frames that the page has not said to have drawn.
   std::size_t last_slot_ = 0;
+  std::size_t pair_ = 0;  ///< Which it shows.
 };
 
 }  // namespace voqcal

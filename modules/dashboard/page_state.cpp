@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/selection/voq.hpp"
+#include "core/sensor_network/sensor_pair.hpp"
 #include "core/units.hpp"
 #include "dashboard/slot.hpp"
 #include "messaging/convert_board.hpp"
@@ -125,14 +126,33 @@ Json Part(const spread_t& spread) {
   return {{"mean", spread.mean}, {"std", spread.std}, {"max", spread.max}};
 }
 
-Json VerdictPart(const assessment_t& assessment) {
+/// Of a pair's assessment or of a rig.
+template <typename Message>
+Json VerdictPart(const Message& message) {
   Json checks = Json::array();
-  for (const verdict_check_t& check : assessment.verdict_checks) {
+  for (const verdict_check_t& check : message.verdict_checks) {
     checks.push_back({{"name", check.name}, {"grade", check.grade}, {"text", check.text}});
   }
-  return {{"grade", assessment.verdict_grade},
-          {"headline", assessment.verdict_headline},
+  return {{"grade", message.verdict_grade},
+          {"headline", message.verdict_headline},
           {"checks", checks}};
+}
+
+Json RowPart(const PairRow& row) {
+  Json part = {{"name", row.name},
+               {"lidar", row.lidar},
+               {"camera", row.camera},
+               {"num_samples", row.num_samples},
+               {"silent", row.silent},
+               {"problem", row.result == nullptr ? "" : row.result->problem},
+               {"grade", row.result == nullptr ? "" : row.result->verdict_grade},
+               {"headline", row.result == nullptr ? "" : row.result->verdict_headline}};
+  if (row.next_pose != nullptr) {
+    part["worst_error"] = row.next_pose->worst_error;
+    part["unit"] = row.next_pose->unit;
+    part["is_enough"] = row.next_pose->is_enough != 0;
+  }
+  return part;
 }
 
 /// 1 sigma of three of the covariance's axes.
@@ -145,12 +165,27 @@ Json Sigma(const extrinsic_refined_t& refined, int first, double scale) {
 
 }  // namespace
 
-std::string RigJson(const Rig& rig) {
+std::string RigJson(const Rig& rig, bool is_of_several) {
   Json json = Of(Slot::kRig);
-  json["name"] = rig.name;
+  json["name"] = is_of_several ? rig.rig_name : rig.name;
+  if (is_of_several) {
+    json["pair"] = {{"name", PairName(rig.lidar_name, rig.camera_name)},
+                    {"lidar", rig.lidar_name},
+                    {"camera", rig.camera_name}};
+  }
   json["camera"] = {{"width_px", rig.camera.width_px},
                     {"height_px", rig.camera.height_px},
                     {"border", Border(rig.camera)}};
+  return Text(json);
+}
+
+std::string PairsJson(const std::vector<PairRow>& rows, const rig_extrinsics_t* rig) {
+  Json json = Of(Slot::kPairs);
+  json["pairs"] = Json::array();
+  for (const PairRow& row : rows) json["pairs"].push_back(RowPart(row));
+  json["weakest"] = rig == nullptr || rig->weakest_pair.empty() ? rows.front().name : rig->weakest_pair;
+  json["problem"] = rig == nullptr ? "" : rig->problem;
+  if (rig != nullptr && !rig->verdict_grade.empty()) json["verdict"] = VerdictPart(*rig);
   return Text(json);
 }
 
@@ -210,7 +245,10 @@ std::string ReportJson(const SessionReport& report, const std::string& folder) {
 }
 
 // "beat" is new each second, so that a page knows that it is still told.
-std::string ModulesJson(const RigHealth& health, const Channels& channels, RigHealth::Time now) {
+std::string ModulesJson(const RigHealth& health,
+                        const Channels& channels,
+                        RigHealth::Time now,
+                        const std::set<std::string>& names_of_others) {
   Json json = Of(Slot::kModules);
   json["beat"] = std::chrono::floor<std::chrono::seconds>(now.time_since_epoch()).count();
   json["modules"] = Json::array();
@@ -226,6 +264,7 @@ std::string ModulesJson(const RigHealth& health, const Channels& channels, RigHe
                               {"cause", fault.cause},
                               {"remedy", fault.remedy},
                               {"is_grave", fault.is_grave}});
+    if (names_of_others.count(fault.of) != 0) json["faults"].back()["is_of_others"] = true;
   }
   json["flows"] = {{"lidar", ToString(health.FlowOf(channels.lidar_points, now))},
                    {"camera", ToString(health.FlowOf(channels.camera_image, now))},

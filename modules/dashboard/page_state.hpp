@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "voqcal/extrinsic_refined_t.hpp"
 #include "voqcal/lidar_board_t.hpp"
 #include "voqcal/next_pose_t.hpp"
+#include "voqcal/rig_extrinsics_t.hpp"
 #include "voqcal/samples_t.hpp"
 
 namespace voqcal {
@@ -23,7 +25,22 @@ namespace voqcal {
 // What the page is told, as JSON: pure functions. Every object has its slot's name as "kind";
 // numbers that are not finite become null; names end in their units.
 
-std::string RigJson(const Rig& rig);
+/// @param is_of_several  the rig has other pairs: says which this is.
+std::string RigJson(const Rig& rig, bool is_of_several = false);
+
+/// A pair of a rig of several, in the table of all.
+struct PairRow {
+  std::string name;  ///< PairName.
+  std::string lidar;
+  std::string camera;
+  int num_samples = 0;
+  std::string silent;                 ///< Which of its sensors sends nothing; empty if none.
+  const rig_pair_t* result = nullptr;  ///< Null: nothing was heard of one.
+  const next_pose_t* next_pose = nullptr;  ///< The same.
+};
+/// All pairs, what the rig that they are joined to is worth, and the weakest.
+/// @param rig  null: none was heard.
+std::string PairsJson(const std::vector<PairRow>& rows, const rig_extrinsics_t* rig);
 
 /// @param samples  of `message`, with the candidates that were chosen.
 /// @param averaged, assessment  of the same or earlier samples; null while there is none.
@@ -58,7 +75,11 @@ struct SessionReport {
 std::string ReportJson(const SessionReport& report, const std::string& folder);
 
 /// How each module is, what is wrong, and what comes of the four streams that samples are made of.
-std::string ModulesJson(const RigHealth& health, const Channels& channels, RigHealth::Time now);
+/// @param names_of_others  modules and sensors of other pairs, whose faults leave this one to work.
+std::string ModulesJson(const RigHealth& health,
+                        const Channels& channels,
+                        RigHealth::Time now,
+                        const std::set<std::string>& names_of_others = {});
 
 std::string LidarBoardJson(const lidar_board_t& message);
 std::string CameraBoardJson(const camera_board_t& message, const CameraModel& camera);

@@ -23,6 +23,15 @@ Expected<PageRequest, std::string> ReadShown(const Json& json) {
   return std::string("\"shown\" must be \"image\" or \"cloud\"");
 }
 
+Expected<PageRequest, std::string> ReadWatch(const Json& json) {
+  PageRequest request;
+  if (json.size() == 1 && json["watch"].is_string()) {
+    request.watch = json["watch"].get<std::string>();
+  }
+  if (request.watch.empty()) return std::string("\"watch\" is the name of a pair and stands alone");
+  return request;
+}
+
 Expected<PageRequest, std::string> ReadCommand(const Json& json) {
   PageRequest request;
   if (json["command"].is_string()) request.command = json["command"].get<std::string>();
@@ -30,7 +39,14 @@ Expected<PageRequest, std::string> ReadCommand(const Json& json) {
     return std::string("\"command\" must be \"capture\", \"discard\", \"finish\" or \"reset\"");
   }
   const bool has_sample = json.contains("sample_id");
-  if (json.size() != (has_sample ? 2U : 1U)) return std::string("unknown keys beside \"command\"");
+  const bool has_pair = json.contains("pair");
+  if (json.size() != 1U + (has_sample ? 1U : 0U) + (has_pair ? 1U : 0U)) {
+    return std::string("unknown keys beside \"command\"");
+  }
+  if (has_pair) {
+    if (!json["pair"].is_string()) return std::string("\"pair\" is the name of a pair");
+    request.pair = json["pair"].get<std::string>();
+  }
   if (!has_sample) return request;
   // Beyond 2^53 JavaScript's numbers are not exact.
   constexpr std::uint64_t kMaxId = std::uint64_t{1} << 53U;
@@ -51,6 +67,7 @@ Expected<PageRequest, std::string> ParsePageRequest(std::string_view text) {
   if (json.is_discarded()) return std::string("the request is no JSON");
   if (!json.is_object()) return std::string("the request is no JSON object");
   if (json.contains("shown")) return ReadShown(json);
+  if (json.contains("watch")) return ReadWatch(json);
   if (json.contains("command")) return ReadCommand(json);
   return std::string("the request has neither \"command\" nor \"shown\"");
 }

@@ -37,8 +37,7 @@ tcp::acceptor Listen(boost::asio::io_context* context, const ServerOptions& opti
 
 struct DashboardServer::Impl {
   explicit Impl(const ServerOptions& options)
-      : hub(std::make_shared<Hub>()), acceptor(Listen(&context, options)) {
-    hub->options = options;
+      : hub(std::make_shared<Hub>(options)), acceptor(Listen(&context, options)) {
     port = acceptor.local_endpoint().port();
   }
 
@@ -101,17 +100,22 @@ DashboardServer::~DashboardServer() {
 std::uint16_t DashboardServer::port() const { return impl_->port; }
 int DashboardServer::num_pages() const { return impl_->hub->num_pages; }
 
-void DashboardServer::Show(Slot slot, FramePtr frame) {
-  boost::asio::post(impl_->context, [hub = impl_->hub, slot, frame = std::move(frame)] {
-    hub->newest.at(static_cast<std::size_t>(slot)) = frame;
-    for (Page* page : hub->pages) page->HasNew(slot);
+int DashboardServer::num_pages(std::size_t pair) const {
+  return impl_->hub->pairs.at(pair).num_pages;
+}
+
+void DashboardServer::Show(Slot slot, FramePtr frame, std::size_t pair) {
+  boost::asio::post(impl_->context, [hub = impl_->hub, slot, pair, frame = std::move(frame)] {
+    hub->pairs.at(pair).newest.at(static_cast<std::size_t>(slot)) = frame;
+    for (Page* page : hub->pages) page->HasNew(slot, pair);
   });
 }
 
-void DashboardServer::Offer(std::map<std::string, StaticFile> exports) {
-  boost::asio::post(impl_->context, [hub = impl_->hub, exports = std::move(exports)]() mutable {
-    hub->exports = std::move(exports);
-  });
+void DashboardServer::Offer(std::map<std::string, StaticFile> exports, std::size_t pair) {
+  boost::asio::post(impl_->context,
+                    [hub = impl_->hub, pair, exports = std::move(exports)]() mutable {
+                      hub->pairs.at(pair).exports = std::move(exports);
+                    });
 }
 
 std::vector<PageRequest> DashboardServer::TakeCommands() { return impl_->hub->commands.Take(); }

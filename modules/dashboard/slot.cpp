@@ -8,6 +8,7 @@ namespace voqcal {
 
 const char* ToString(Slot slot) {
   constexpr std::array<const char*, kNumSlots> kNames = {"rig",
+                                                         "pairs",
                                                          "samples",
                                                          "result",
                                                          "report",

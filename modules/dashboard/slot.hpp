@@ -9,6 +9,7 @@ namespace voqcal {
 /// The kinds of what a page is told. Of each kind only the newest counts.
 enum class Slot : std::size_t {
   kRig,
+  kPairs,
   kSamples,
   kResult,
   kReport,
@@ -20,7 +21,7 @@ enum class Slot : std::size_t {
   kCloud,
   kImage,
 };
-inline constexpr std::size_t kNumSlots = 11;
+inline constexpr std::size_t kNumSlots = 12;
 
 /// "rig", "samples", ...: its name in every message.
 const char* ToString(Slot slot);

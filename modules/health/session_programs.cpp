@@ -64,7 +64,9 @@ std::vector<SessionProgram> ProgramsOfRig(const std::filesystem::path& rig) {
           {"sample_collector_" + name, "sample_collector", lidar + "," + camera, name});
     }
   }
-  programs.push_back({kRigCalibrator, kRigCalibrator, "", ""});
+  for (const char* module : {kRigCalibrator, kDashboard}) {
+    programs.push_back({module, module, "", ""});
+  }
   return programs;
 }
 

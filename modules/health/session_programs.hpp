@@ -11,6 +11,8 @@ std::vector<std::string> AllModuleNames();
 
 /// The module that a session of several sensors has beside drivers, detectors and collectors.
 inline constexpr char kRigCalibrator[] = "rig_calibrator";
+/// The page: of a pair, or one for all of a rig.
+inline constexpr char kDashboard[] = "dashboard";
 
 /// It may end by itself: what it reads has an end. No other module may.
 /// @param name  of the module, or of one of several such (SessionProgram).
@@ -32,7 +34,7 @@ struct SessionProgram {
 };
 
 /// What a session runs: of a pair every module once; of several sensors a driver and a detector
-/// each, a sample collector a pair, and the rig's calibrator. In the order of the flow.
+/// each, a sample collector a pair, the rig's calibrator and its page. In the order of the flow.
 /// @throws as PairsOfRig.
 std::vector<SessionProgram> ProgramsOfRig(const std::filesystem::path& rig);
 

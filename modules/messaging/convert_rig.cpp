@@ -43,6 +43,13 @@ void FillTree(const RigExtrinsics& result, rig_extrinsics_t* message) {
   const Verdict verdict = VerdictOf(result);
   message->verdict_grade = ToString(verdict.grade);
   message->verdict_headline = verdict.headline;
+  for (const VerdictCheck& check : verdict.checks) {
+    verdict_check_t& part = message->verdict_checks.emplace_back();
+    part.name = check.name;
+    part.grade = ToString(check.grade);
+    part.text = check.text;
+  }
+  message->num_verdict_checks = static_cast<std::int32_t>(message->verdict_checks.size());
   message->reference = network.reference;
   for (std::size_t i = 0; i < network.sensors.size(); ++i) {
     rig_sensor_t sensor{};
@@ -66,8 +73,6 @@ void FillTree(const RigExtrinsics& result, rig_extrinsics_t* message) {
 rig_extrinsics_t ToMessage(const RigExtrinsics& result) {
   rig_extrinsics_t message{};
   const std::vector<PairInTree> in_tree = PairsInTree(result);
-  if (const PairInTree* weakest = WeakestOf(in_tree)) message.weakest_pair = weakest->name;
-  message.advice = AdviceOn(result);
   message.problem = result.network.problem;
   if (result.network.IsUsable()) FillTree(result, &message);
   for (const CalibratedPair& pair : result.pairs) {

@@ -6,14 +6,9 @@
 #include <spdlog/spdlog.h>
 
 #include "core/add_if_new.hpp"
-#include "core/format.hpp"
-#include "core/units.hpp"
 
 namespace voqcal {
 namespace {
-
-/// Where a turn and a shift are weighed against one another.
-constexpr double kTypicalRangeM = 5.0;
 
 /// Two cameras, by what their sessions have in common; nothing if that is too little.
 std::optional<CalibratedPair> CalibrateCameras(const PairSession& from,
@@ -134,27 +129,6 @@ std::vector<PairInTree> PairsInTree(const RigExtrinsics& result) {
         {pair.Name(), std::sqrt(variance.head<3>().sum()), std::sqrt(variance.tail<3>().sum())});
   }
   return pairs;
-}
-
-const PairInTree* WeakestOf(const std::vector<PairInTree>& pairs) {
-  const auto error_m = [](const PairInTree& pair) {
-    return std::hypot(kTypicalRangeM * pair.sigma_rad, pair.sigma_m);
-  };
-  const auto weakest =
-      std::max_element(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
-        return error_m(a) < error_m(b);
-      });
-  return weakest == pairs.end() ? nullptr : &*weakest;
-}
-
-std::string AdviceOn(const RigExtrinsics& result) {
-  const std::vector<PairInTree> pairs = PairsInTree(result);
-  const PairInTree* weakest = WeakestOf(pairs);
-  if (weakest == nullptr) return "";
-  return Format("Show the board to %s: of all pairs it is known least, to %.3f deg and %.1f mm.",
-                weakest->name.c_str(),
-                kDegPerRad * weakest->sigma_rad,
-                1e3 * weakest->sigma_m);
 }
 
 }  // namespace voqcal

@@ -55,11 +55,4 @@ struct PairInTree {
 /// In the order of the pairs; none without a tree.
 std::vector<PairInTree> PairsInTree(const RigExtrinsics& result);
 
-/// The one known least, by what its errors make of a point some metres away; null if there is none.
-const PairInTree* WeakestOf(const std::vector<PairInTree>& pairs);
-
-/// What helps most next, in a sentence: where to show the board. Empty without a tree: the
-/// network's problem says it.
-std::string AdviceOn(const RigExtrinsics& result);
-
 }  // namespace voqcal

@@ -5,14 +5,11 @@
 #include <utility>
 
 namespace voqcal {
-namespace {
 
 void HandleAll(Bus* bus) {
   while (bus->HandleOnce(std::chrono::milliseconds(0))) {
   }
 }
-
-}  // namespace
 
 PairSession SessionOf(const Rig& rig) {
   PairSession session;

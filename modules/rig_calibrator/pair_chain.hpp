@@ -15,6 +15,9 @@
 
 namespace voqcal {
 
+/// Every message that waits.
+void HandleAll(Bus* bus);
+
 /// What its session is of; nothing came of it yet.
 PairSession SessionOf(const Rig& rig);
 

@@ -7,6 +7,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "core/guidance/weakest_pair.hpp"
 #include "core/sensor_network/sensor_pair.hpp"
 #include "files/atomic_file.hpp"
 #include "messaging/convert_board.hpp"
@@ -42,6 +43,13 @@ void KeepSaid(const std::string& channel,
   });
 }
 
+/// To the weakest of all pairs.
+std::string AdviceOn(const std::string& pair, const std::optional<next_pose_t>& next) {
+  if (next && next->is_enough != 0) return pair + ": " + next->advice;
+  const std::string words = next ? next->problem.empty() ? next->advice : next->problem : "";
+  return "Show the board to " + pair + ". " + words;
+}
+
 /// A tree that is not of these samples must not be taken for theirs.
 void WriteResult(const std::filesystem::path& file, const RigExtrinsics& rig) {
   if (rig.network.IsUsable()) return WriteFileAtomically(file, ToYaml(rig));
@@ -51,17 +59,21 @@ void WriteResult(const std::filesystem::path& file, const RigExtrinsics& rig) {
 }  // namespace
 
 RigCalibratorNode::Chain::Chain(const Rig& rig_in, const std::filesystem::path& folder)
-    : rig(rig_in), bus("memq://"), modules(rig, &bus, folder) {
+    : rig(rig_in), bus("memq://"), modules(rig, &bus, folder), guide(rig, &bus) {
   KeepSaid<voq_sets_t>(rig.channels.voq_sets, &bus, &said);
   KeepSaid<extrinsic_averaged_t>(rig.channels.extrinsic_averaged, &bus, &said);
   KeepSaid<extrinsic_refined_t>(rig.channels.extrinsic_refined, &bus, &said);
   KeepSaid<assessment_t>(rig.channels.calib_assessment, &bus, &said);
+  KeepSaid<next_pose_t>(rig.channels.next_pose, &bus, &said);
+  bus.Keep(rig.channels.next_pose, &next_pose);
 }
 
 PairSession RigCalibratorNode::Chain::Calibrate(const samples_t& message,
                                                 const std::vector<BoardSample>& samples) {
   bus.Publish(rig.channels.calib_samples, message);
   modules.Run();
+  guide.Step();
+  HandleAll(&bus);
   PairSession session = SessionOf(rig);
   if (modules.assessor().HasAssessed(message)) {
     TakeResult(samples, modules.assessor().result(), modules.assessor().problem(), &session);
@@ -137,12 +149,33 @@ void RigCalibratorNode::Republish() {
       message_.pairs[i].num_samples = pairs_[i].newest->num_samples;
     }
   }
+  AdviseOnWeakest();
   bus_.Publish(channel_, message_);
   for (const Pair& pair : pairs_) {
     for (const auto& [channel, bytes] : pair.said) {
       bus_.PublishBytes(channel, bytes.data(), bytes.size());
     }
   }
+}
+
+void RigCalibratorNode::AdviseOnWeakest() {
+  std::vector<PairNeed> needs;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const CalibratedPair& pair = sessions_[i].pair;
+    PairNeed need;
+    need.from = sessions_[i].lidar;
+    need.to = sessions_[i].camera;
+    need.num_samples = message_.pairs[i].num_samples;
+    if (pair.problem.empty()) need.grade = pair.verdict.grade;
+    if (const auto& next = pairs_[i].next_pose) {
+      need.is_enough = next->is_enough != 0;
+      need.worst_error = next->worst_error;
+    }
+    needs.push_back(need);
+  }
+  weakest_ = WeakestPair(needs, weakest_);
+  message_.weakest_pair = weakest_ ? pairs_[*weakest_].name : "";
+  message_.advice = weakest_ ? AdviceOn(pairs_[*weakest_].name, pairs_[*weakest_].next_pose) : "";
 }
 
 bool RigCalibratorNode::IsToDo(const Pair& pair) const {
@@ -181,7 +214,10 @@ void RigCalibratorNode::Start(std::size_t index) {
        samples = std::move(samples),
        sessions = sessions_]() mutable {
         sessions[index] = chain->Calibrate(message, samples);
-        Outcome outcome = {sessions[index], chain->said, JoinSessions(sessions, "", made_from_)};
+        Outcome outcome = {sessions[index],
+                           chain->said,
+                           chain->next_pose,
+                           JoinSessions(sessions, "", made_from_)};
         if (is_whole) WriteResult(result_file_, outcome.rig);
         return outcome;
       });
@@ -190,6 +226,7 @@ void RigCalibratorNode::Start(std::size_t index) {
 void RigCalibratorNode::Take(const Outcome& outcome) {
   sessions_[working_on_] = outcome.session;
   pairs_[working_on_].said = outcome.said;
+  pairs_[working_on_].next_pose = outcome.next_pose;
   Count(outcome.session.pair.problem.empty() ? "calibrations" : "without a result");
   const std::int64_t revision = message_.revision + 1;
   message_ = ToMessage(outcome.rig);

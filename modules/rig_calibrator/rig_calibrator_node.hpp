@@ -11,18 +11,20 @@
 
 #include "messaging/bus.hpp"
 #include "messaging/module.hpp"
+#include "pose_guide/pose_guide_node.hpp"
 #include "result/join_rig.hpp"
 #include "rig/rig.hpp"
 #include "rig_calibrator/pair_chain.hpp"
+#include "voqcal/next_pose_t.hpp"
 #include "voqcal/rig_extrinsics_t.hpp"
 #include "voqcal/samples_t.hpp"
 
 namespace voqcal {
 
 /// CALIB_SAMPLES of every pair in, RIG_EXTRINSICS, what a pair's own modules would say (VOQ_SETS to
-/// CALIB_ASSESSMENT) and the session's files out: calibrates a pair when its samples have changed,
-/// and joins all to one tree. A worker does that, one pair after the other, each on its newest
-/// samples: messages are heard meanwhile.
+/// CALIB_ASSESSMENT, and NEXT_POSE) and the session's files out: calibrates a pair when its samples
+/// have changed, and joins all to one tree. A worker does that, one pair after the other, each on
+/// its newest samples: messages are heard meanwhile.
 ///
 /// The files are those that calibrate_rig leaves, of the same samples to the byte: extrinsic.yaml
 /// in the folder of each pair, rig_extrinsics.yaml beside them. A rig_extrinsics.yaml that is there
@@ -57,7 +59,9 @@ class RigCalibratorNode : public Module {
     Rig rig;
     Bus bus;
     Messages said;  ///< By its modules, the newest.
+    std::optional<next_pose_t> next_pose;
     PairChain modules;
+    PoseGuideNode guide;
   };
   /// Which samples a session was made from.
   struct MadeOf {
@@ -72,6 +76,7 @@ class RigCalibratorNode : public Module {
     std::optional<samples_t> newest;
     MadeOf made_of;
     Messages said;
+    std::optional<next_pose_t> next_pose;
 
     /// It was not worked on yet.
     bool IsWaiting() const { return made_of.revision < 0; }
@@ -79,6 +84,7 @@ class RigCalibratorNode : public Module {
   struct Outcome {
     PairSession session;
     Messages said;
+    std::optional<next_pose_t> next_pose;
     RigExtrinsics rig;
   };
 
@@ -86,6 +92,8 @@ class RigCalibratorNode : public Module {
   std::optional<std::size_t> NextToDo() const;
   void Start(std::size_t pair);
   void Take(const Outcome& outcome);
+  /// Says in `message_` which pair is the weakest, and what helps it.
+  void AdviseOnWeakest();
 
   Bus& bus_;
   std::string channel_;
@@ -95,6 +103,7 @@ class RigCalibratorNode : public Module {
   std::vector<PairSession> sessions_;  ///< By pair.
   std::future<Outcome> work_;
   std::size_t working_on_ = 0;  ///< Or worked on last.
+  std::optional<std::size_t> weakest_;
   rig_extrinsics_t message_{};
 };
 

@@ -21,7 +21,7 @@ ROOMS = {
 }
 PROCESS = {"core", "files", "rig", "result", "messaging", "health", "images", "voqcal"}  # never another process
 # ... but the one that does for all pairs of a rig what these do for one.
-ROOMS["rig_calibrator"] = PROCESS | {"voq_selector", "extrinsic_estimator", "extrinsic_refiner", "assessor"}
+ROOMS["rig_calibrator"] = PROCESS | {"voq_selector", "extrinsic_estimator", "extrinsic_refiner", "assessor", "pose_guide"}
 
 
 def core_rooms(modules):

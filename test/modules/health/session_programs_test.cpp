@@ -34,12 +34,13 @@ TEST(SessionPrograms, OfSeveralSensorsADriverAndADetectorEachAndACollectorAPair)
                           "camera_board_detector_right",
                           "sample_collector_front_left",
                           "sample_collector_front_right",
-                          "rig_calibrator"));
+                          "rig_calibrator",
+                          "dashboard"));
   EXPECT_EQ(programs[1].sensors, "left");
   EXPECT_EQ(programs[1].folder, "");
   EXPECT_EQ(programs[7].sensors, "front,right");
   EXPECT_EQ(programs[7].folder, "front_right");
-  EXPECT_THAT(ProgramsOfRig(path), SizeIs(4 + 4 + 4 + 1));
+  EXPECT_THAT(ProgramsOfRig(path), SizeIs(4 + 4 + 4 + 2));
 }
 
 TEST(SessionPrograms, OfAPairEveryModuleByItsOwnName) {

@@ -19,6 +19,7 @@
 #include "messaging/convert_points.hpp"
 #include "messaging/wall_clock.hpp"
 #include "result/result_file.hpp"
+#include "support/sanitizers.hpp"
 #include "support/temporary_folder.hpp"
 #include "system/system_test.hpp"
 
@@ -101,6 +102,17 @@ TEST_F(DashboardInBrowser, GuidesASessionFromStartToEnough) {
                                          offline});
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(ReadWholeFile(offline + "/extrinsic.yaml"), ReadWholeFile(result));
+}
+
+// Two lidars, three cameras: more stops than the script needs.
+TEST_F(DashboardInBrowser, ShowsARigOfSeveralSensorsPairByPair) {
+  VOQCAL_LEAVE_TO_RELEASE();
+  ASSERT_NO_FATAL_FAILURE(
+      Up(test::Replaced(test::SmallRigOfSeveralText(), "num_poses: 12", "num_poses: 300"), {}));
+  const test::Outcome outcome =
+      test::Run({kWithNode, "node", Script("dashboard_rig.mjs"), session_});
+  if (outcome.status == kSkipped) GTEST_SKIP() << outcome.out;
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
 }
 
 /// Sensors faster than the page is shown: one image at 30 Hz and one sweep at 20 Hz, again and

@@ -1,7 +1,6 @@
 // A rig of several sensors, live: two simulated lidars and three cameras in one world.
 
 #include <algorithm>
-#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,39 +18,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string ReplacedAll(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
-    text.replace(at, from.size(), to);
-  }
-  return text;
-}
-
-/// config/rigs/simulated_several.yaml made short and small: 12 near stops, images of 640 x 400,
-/// lidars of few points.
-std::string SmallRigText() {
-  std::string text =
-      ReadWholeFile(std::string(VOQCAL_SOURCE_DIR) + "/config/rigs/simulated_several.yaml");
-  const std::pair<const char*, const char*> changes[] = {
-      {"width_px: 1280", "width_px: 640"},
-      {"height_px: 800", "height_px: 400"},
-      {"cx_px: 641.5", "cx_px: 320.5"},
-      {"cy_px: 396.0", "cy_px: 197.75"},
-      {"fx_px: 750.0", "fx_px: 375.0"},
-      {"fy_px: 751.5", "fy_px: 375.75"},
-      {"fx_px: 800.0", "fx_px: 400.0"},
-      {"fy_px: 801.5", "fy_px: 400.75"},
-      {"fx_px: 780.0", "fx_px: 390.0"},
-      {"fy_px: 781.5", "fy_px: 390.75"},
-      {"pattern: raster", "pattern: vlp16"},
-      {"num_poses: 40", "num_poses: 12"},
-      {"hold_s: 1.5", "hold_s: 0.8"},
-      {"move_s: 0.5", "move_s: 0.4"},
-      {"max_distance_m: 3.5", "max_distance_m: 2.5"},
-      {"239.255.76.67:7768", "239.255.76.67:7793"}};
-  for (const auto& [from, to] : changes) text = ReplacedAll(text, from, to);
-  return text;
-}
-
 class LiveRig : public ::testing::Test {
  protected:
   ~LiveRig() override { Down(); }
@@ -64,7 +30,7 @@ class LiveRig : public ::testing::Test {
   test::Outcome Down() const { return test::Run({test::Tool("down"), "--session", session_}); }
 
   test::TemporaryFolder folder_;
-  std::string rig_ = folder_.Write("rig.yaml", SmallRigText());
+  std::string rig_ = folder_.Write("rig.yaml", test::SmallRigOfSeveralText());
   std::string session_ = folder_.path() / "session";
 };
 
@@ -111,7 +77,7 @@ TEST_F(LiveRig, WhatCannotBeEndsInALine) {
               HasSubstr("has no sensor 'fornt' (did you mean front?)"));
   EXPECT_THAT(error_of(rig_, {"--only", "lidar_driver_rof"}),
               HasSubstr("no module 'lidar_driver_rof'"));
-  const std::string text = SmallRigText();
+  const std::string text = test::SmallRigOfSeveralText();
   const std::string one_channel = folder_.Write(
       "one_channel.yaml",
       test::Replaced(

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <stdexcept>
+#include <utility>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -38,6 +39,13 @@ int StatusOf(pid_t pid) {
   int status = 0;
   if (waitpid(pid, &status, 0) != pid) throw std::runtime_error("waitpid failed");
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+std::string ReplacedAll(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
 }
 
 }  // namespace
@@ -117,6 +125,30 @@ std::string ShortRigText() {
   set("move_s", "0.5", "0.4");
   set("max_distance_m", "4.5", "3.0");  // the small image has half the pixels on a board
   return Replaced(text, "239.255.76.67:7767", "239.255.76.67:7791");
+}
+
+std::string SmallRigOfSeveralText() {
+  std::string text =
+      ReadWholeFile(std::string(VOQCAL_SOURCE_DIR) + "/config/rigs/simulated_several.yaml");
+  const std::pair<const char*, const char*> changes[] = {
+      {"width_px: 1280", "width_px: 640"},
+      {"height_px: 800", "height_px: 400"},
+      {"cx_px: 641.5", "cx_px: 320.5"},
+      {"cy_px: 396.0", "cy_px: 197.75"},
+      {"fx_px: 750.0", "fx_px: 375.0"},
+      {"fy_px: 751.5", "fy_px: 375.75"},
+      {"fx_px: 800.0", "fx_px: 400.0"},
+      {"fy_px: 801.5", "fy_px: 400.75"},
+      {"fx_px: 780.0", "fx_px: 390.0"},
+      {"fy_px: 781.5", "fy_px: 390.75"},
+      {"pattern: raster", "pattern: vlp16"},
+      {"num_poses: 40", "num_poses: 12"},
+      {"hold_s: 1.5", "hold_s: 0.8"},
+      {"move_s: 0.5", "move_s: 0.4"},
+      {"max_distance_m: 3.5", "max_distance_m: 2.5"},
+      {"239.255.76.67:7768", "239.255.76.67:7793"}};
+  for (const auto& [from, to] : changes) text = ReplacedAll(text, from, to);
+  return text;
 }
 
 }  // namespace voqcal::test

@@ -55,4 +55,8 @@ std::string SimulatedRigText();
 /// a second, images of 640 x 400.
 std::string ShortRigText();
 
+/// config/rigs/simulated_several.yaml made short and small: 12 near stops, images of 640 x 400,
+/// lidars of few points.
+std::string SmallRigOfSeveralText();
+
 }  // namespace voqcal::test

@@ -34,6 +34,18 @@ for (const stream of Object.keys(FLOWING)) {
   });
 }
 
+test("a fault of another pair of the rig is told, and this one goes on", () => {
+  const silence = { ...fault("camera rear", "The camera rear has sent nothing for 2 s"), is_of_others: true };
+  const view = healthView("live", told([silence]), 400);
+  assert.equal(view.state, "wrong");
+  assert.equal(view.headline, "Wrong: camera rear");
+  assert.ok(view.mayOrder);
+  assert.deepEqual(view.faults, [silence]);
+  const own = healthView("live", told([silence, fault("disk", "The disk is full")]), 400);
+  assert.ok(!own.mayOrder);
+  assert.equal(own.instead, "Wait with the board. The disk is full.");
+});
+
 test("clocks apart, two sessions and a full disk halt the orders although all streams flow", () => {
   for (const of of ["sample_collector", "network", "disk"]) {
     const view = healthView("live", told([fault(of, "It is so")]), 400);

@@ -4,7 +4,8 @@ import { byId, setText } from "./dom.ts";
 import { News } from "./news.ts";
 import { eventText } from "./panels.ts";
 import { signalTaken } from "./signal.ts";
-import type { CommandName, Events, Request, Samples } from "./protocol.ts";
+import { pairText } from "./pairs.ts";
+import type { CommandName, Events, PairName, Pairs, Request, Samples } from "./protocol.ts";
 
 /** What is waited for after a command, said once it takes longer than a moment. */
 const WAITING: Record<CommandName, string> = {
@@ -25,19 +26,25 @@ const GIVE_UP_MS = 30_000;
 export class Actions {
   private waitingFor: CommandName | null = null;
   private timers: number[] = [];
-  private readonly news = new News();
+  private news = new News();
   private isLive = false;
   private mayCapture = false;
   private hasSamples = false;
+  /** Of any pair. */
+  private hasAnySamples = false;
+  /** Which is shown; null where there is but one. */
+  private pair: PairName | null = null;
 
   constructor(private readonly sendRequest: (request: Request) => boolean) {
-    for (const command of ["capture", "discard", "finish"] as const) {
-      byId(command).addEventListener("click", () => this.send({ command }));
+    for (const command of ["capture", "discard"] as const) {
+      byId(command).addEventListener("click", () => this.sendOfPair({ command }));
     }
+    byId("finish").addEventListener("click", () => this.send({ command: "finish" }));
     const confirm = byId<HTMLDialogElement>("confirm-reset");
     byId("reset").addEventListener("click", () => confirm.showModal());
     confirm.addEventListener("close", () => {
       if (confirm.returnValue === "reset") this.send({ command: "reset" });
+      if (confirm.returnValue === "pair") this.sendOfPair({ command: "reset" });
       confirm.returnValue = "";
     });
     const exports = byId<HTMLDialogElement>("export-dialog");
@@ -45,7 +52,13 @@ export class Actions {
     document.addEventListener("keydown", (event) => this.onKey(event));
   }
 
-  send(request: { command: CommandName; sample_id?: number }): void {
+  /** What is of samples is of the pair that is shown. */
+  sendOfPair(request: { command: CommandName; sample_id?: number }): void {
+    this.send(this.pair ? { ...request, pair: this.pair.name } : request);
+  }
+
+  /** To all pairs, if it names none. */
+  private send(request: { command: CommandName; sample_id?: number; pair?: string }): void {
     if (!this.sendRequest(request)) return this.say("Not sent: there is no connection");
     this.stopWaiting();
     this.waitingFor = request.command;
@@ -76,6 +89,24 @@ export class Actions {
     byId("finish").classList.toggle("main", isEnough);
   }
 
+  /** What comes from now on is of this one. */
+  setPair(pair: PairName): void {
+    this.pair = pair;
+    this.news = new News();
+    this.stopWaiting();
+    this.say("");
+    const resetPair = byId("reset-pair");
+    resetPair.hidden = false;
+    resetPair.textContent = `Reset ${pairText(pair)} alone`;
+    setText("reset-all", "Reset all pairs");
+    setText("confirm-text", "All pairs begin anew, or this one alone.");
+  }
+
+  takePairs({ pairs }: Pairs): void {
+    this.hasAnySamples = pairs.some(({ num_samples }) => num_samples > 0);
+    this.enable();
+  }
+
   takeSamples({ samples }: Samples): void {
     this.hasSamples = samples.length > 0;
     this.enable();
@@ -96,7 +127,8 @@ export class Actions {
     const set = (id: string, isOn: boolean) => (byId<HTMLButtonElement>(id).disabled = !isOn);
     set("capture", this.isLive && this.mayCapture);
     set("finish", this.isLive);  // without samples it tells what was seen instead
-    for (const id of ["discard", "reset"]) set(id, this.isLive && this.hasSamples);
+    set("discard", this.isLive && this.hasSamples);
+    set("reset", this.isLive && (this.hasSamples || this.hasAnySamples));
   }
 
   private showWaiting(text: string): void {

@@ -41,7 +41,7 @@ export function healthView(connection: ConnectionState, modules: Modules | null,
   const grave = modules.faults.filter((fault) => fault.is_grave);
   const flows = modules.flows;
   const allFlow = Object.values(flows).every((flow) => flow === "flows");
-  if (allFlow && grave.every((fault) => BESIDE_THE_BOARD.includes(fault.of))) {
+  if (allFlow && grave.every(isBesideTheBoard)) {
     return {
       state: grave.length === 0 ? "live" : "wrong",
       headline: grave.length === 0 ? "Live" : headlineOf(grave),
@@ -55,6 +55,10 @@ export function healthView(connection: ConnectionState, modules: Modules | null,
   return halted("waiting", waitingFor(flows), modules.faults, flows);
 }
 
+function isBesideTheBoard({ of, is_of_others }: Fault): boolean {
+  return BESIDE_THE_BOARD.includes(of) || is_of_others === true;
+}
+
 function headlineOf(grave: Fault[]): string {
   return grave.length === 1 ? `Wrong: ${grave[0]!.of}` : `${grave.length} things are wrong`;
 }
@@ -65,7 +69,8 @@ function halted(
   faults: Fault[],
   flows: Record<StreamName, Flow>,
 ): HealthView {
-  const grave = faults.find((fault) => fault.is_grave);
+  const graves = faults.filter((fault) => fault.is_grave);
+  const grave = graves.find((fault) => !isBesideTheBoard(fault)) ?? graves[0];
   const instead = grave ? `Wait with the board. ${grave.what}.` : `${headline}.`;
   return { state, headline, faults, mayOrder: false, instead, flows };
 }

@@ -12,6 +12,7 @@ export class ImageView {
   private cloud: CloudFrame | null = null;
   private guidance: Guidance | null = null;
   private drawnCloud: CloudFrame | null = null;
+  private cleared = 0;
   private pixels: { of: ImageBitmap; data: ImageData } | null = null;
   private readonly context: CanvasRenderingContext2D;
   private readonly points = document.createElement("canvas").getContext("2d")!;
@@ -26,11 +27,21 @@ export class ImageView {
 
   /** Resolves once the image is on the screen. */
   async show(frame: ImageFrame): Promise<void> {
+    const cleared = this.cleared;
     const bitmap = await createImageBitmap(frame.data);
+    if (cleared !== this.cleared) return bitmap.close();
     this.bitmap?.close();
     this.bitmap = bitmap;
     this.frame = frame;
     await this.draw();
+  }
+
+  /** Nothing of what was shown is left. */
+  clear(): void {
+    this.bitmap?.close();
+    this.bitmap = this.frame = this.cloud = this.guidance = this.drawnCloud = this.pixels = null;
+    ++this.cleared;
+    this.context.clearRect(0, 0, this.canvas.width, this.canvas.height);
   }
 
   // These show with the next image.

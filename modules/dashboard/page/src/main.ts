@@ -8,8 +8,9 @@ import { Coverage } from "./coverage.ts";
 import { byId, setText } from "./dom.ts";
 import { healthView, type HealthView } from "./health.ts";
 import { ImageView } from "./image_view.ts";
-import { showEvents, showFaults, showGuidance, showModules, showNoGuidance, showReport, showResult, showSamples } from "./panels.ts";
-import type { CameraBoard, Guidance, ImageFrame, LidarBoard, Message, Modules } from "./protocol.ts";
+import { PairChoice, pairText, scrollToPair, showPairs } from "./pairs.ts";
+import { showEvents, showFaults, showFirstGuidance, showGuidance, showModules, showNoGuidance, showReport, showResult, showSamples } from "./panels.ts";
+import type { CameraBoard, Guidance, ImageFrame, LidarBoard, Message, Modules, PairName, Pairs } from "./protocol.ts";
 import { SceneView } from "./scene_view.ts";
 
 const STALE_MS = 3000;
@@ -19,6 +20,7 @@ const coverage = new Coverage();
 const scene = makeSceneView();
 const connection = new Connection(take, (state) => {
   connectionState = state;
+  if (state === "live") asked = null;
   showHealth();
 });
 const actions = new Actions((request) => connection.send(request));
@@ -28,6 +30,11 @@ let modulesAt = 0;
 let guidance: Guidance | null = null;
 let shownOrder: Guidance | null = null;
 let imageAt = 0;
+/** Of a rig of several sensors: its pairs, the one that is shown, and the one that the server was asked for last. */
+let pairs: Pairs | null = null;
+let pair: PairName | null = null;
+let asked: string | null = null;
+const choice = new PairChoice(decodeURIComponent(location.hash.slice(1)) || null);
 
 /** Null where the browser has no WebGL: all else works without. */
 function makeSceneView(): SceneView | null {
@@ -70,7 +77,7 @@ function showOrder(order: Guidance | null): void {
   if (order) showGuidance(order);
   image.showGuidance(order);
   scene?.showGuidance(order);
-  actions.setEnough(order?.is_enough ?? false);
+  showEnough();
 }
 
 /** What is stale looks stale: its picture is grey, and what was said of it is said to be over. */
@@ -81,6 +88,65 @@ function showFlow(sensor: "camera" | "lidar", flows: HealthView["flows"]): void 
   const isOver = flow === "silent" || flow === "ended";
   setText(`${sensor}-flow`, isOver ? `${flow}; before: ` : "");
 }
+
+/** A rig has enough once its weakest pair has. */
+function showEnough(): void {
+  const weakest = pairs?.pairs.find(({ name }) => name === pairs!.weakest);
+  actions.setEnough((shownOrder?.is_enough ?? false) && weakest?.is_enough !== false);
+}
+
+/** Null: the weakest, whichever it is. */
+function choosePair(name: string | null): void {
+  choice.choose(name);
+  history.replaceState(null, "", name === null ? location.pathname : `#${encodeURIComponent(name)}`);
+  if (pairs) takePairs(pairs);
+}
+
+function takePairs(message: Pairs): void {
+  pairs = message;
+  actions.takePairs(message);
+  const wanted = choice.wanted(message);
+  byId<HTMLInputElement>("follows").checked = !choice.isOwn();
+  const isOther = wanted !== asked && connection.send({ watch: wanted });
+  if (isOther) asked = wanted;
+  showPairs(message, pair?.name ?? "", choosePair);
+  if (isOther) scrollToPair(wanted);
+  showPairName();
+  showEnough();
+}
+
+function showPairName(): void {
+  if (!pair) return;
+  const isWeakest = pairs?.weakest === pair.name;
+  byId("order-of").hidden = false;
+  setText("order-of", `${pairText(pair)}${isWeakest ? ", the weakest pair" : ""}`);
+  setText("result-of", pairText(pair));
+  setText("image-title", `Camera ${pair.camera}`);
+  setText("scene-title", `Lidar ${pair.lidar}`);
+}
+
+/** From now on all that comes is of this pair: nothing of another is left. */
+function showPair(shown: PairName): void {
+  asked ??= shown.name;
+  if (pair?.name === shown.name) return;
+  pair = shown;
+  imageAt = 0;
+  guidance = shownOrder = null;
+  image.clear();
+  scene?.clear();
+  showFirstGuidance();
+  setText("camera-state", "nothing heard");
+  setText("lidar-state", "nothing heard");
+  actions.setPair(shown);
+  take({ kind: "samples", revision: 0, is_finished: false, samples: [] });
+  take({ kind: "result", working_on: "" });
+  take({ kind: "report", state: "", file: "", folder: "" });
+  if (pairs) showPairs(pairs, shown.name, choosePair);
+  showPairName();
+  showHealth();
+}
+
+const folderOfPair = () => (pair ? `${pair.name}/` : "");
 
 function showCameraBoard(board: CameraBoard): void {
   const found = ["board found", ...(board.warnings ?? [])].join(", ");
@@ -108,24 +174,28 @@ function take(message: Message): void {
     case "lidar_board":
       showLidarBoard(message);
       break;
+    case "pairs":
+      takePairs(message);
+      break;
     case "rig":
+      if (message.pair) showPair(message.pair);
       document.title = `${message.name}: calibration`;
       setText("rig", message.name);
       coverage.showRig(message);
       scene?.showRig(message);
       break;
     case "samples":
-      showSamples(message, (id) => actions.send({ command: "discard", sample_id: id }));
+      showSamples(message, (id) => actions.sendOfPair({ command: "discard", sample_id: id }));
       scene?.showSamples(message);
       coverage.showSamples(message.samples);
       actions.takeSamples(message);
       break;
     case "result":
-      showResult(message);
+      showResult(message, folderOfPair());
       scene?.showResult(message);
       break;
     case "report":
-      showReport(message);
+      showReport(message, folderOfPair());
       break;
     case "guidance":
       guidance = message;
@@ -150,5 +220,8 @@ function take(message: Message): void {
 setInterval(showHealth, 500);
 const isColoured = byId<HTMLInputElement>("is-coloured");
 scene?.colourBy((cloud, point) => (isColoured.checked ? image.colourOf(cloud, point) : null));
+byId("follows").addEventListener("change", (event) => {
+  choosePair((event.target as HTMLInputElement).checked ? null : (pair?.name ?? null));
+});
 byId("look-along").addEventListener("click", () => scene?.lookAlong());
 connection.open();

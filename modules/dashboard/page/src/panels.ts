@@ -3,6 +3,14 @@
 import { byId, element, number, setText } from "./dom.ts";
 import type { Check, Events, Fault, Guidance, Modules, Report, Result, Sample, Samples } from "./protocol.ts";
 
+/** Before anything is known of a pair. */
+export function showFirstGuidance(): void {
+  setText("advice", "Hold the board where both sensors see it, and rest.");
+  setText("advice-why", "");
+  delete byId("guidance").dataset.state;
+  byId("enough-meter").hidden = byId("near-meter").hidden = true;
+}
+
 /** Says what there is instead of an order, where nothing would come of one. */
 export function showNoGuidance(instead: string): void {
   setText("advice", instead);
@@ -39,14 +47,15 @@ export function showGuidance(guidance: Guidance): void {
   meter.value = known ? Math.min(1, tolerance / Math.max(worst_error, tolerance, 1e-9)) : 0;
 }
 
-export function showResult(result: Result): void {
+/** @param folder  of the files within the session's: "" or "front_left/". */
+export function showResult(result: Result, folder: string): void {
   byId("progress").hidden = result.working_on === "";
   setText("progress-text", result.working_on);
   const verdict = result.verdict;
   byId("verdict").dataset.grade = verdict?.grade ?? "none";
   setText("verdict", verdict?.headline ?? (result.problem ? `No result: ${result.problem}` : "No result yet"));
   byId("estimate").hidden = verdict === undefined;
-  showExports(result.exports ?? []);
+  showExports((result.exports ?? []).map((name) => folder + name));
   if (!verdict) return;
   setText("translation", `${list(result.translation_m!.map((metres) => 1e3 * metres), 1)} mm`);
   setText("translation-sigma", `± ${list(result.sigma_mm!, 1)} mm`);
@@ -65,11 +74,12 @@ export function showResult(result: Result): void {
   const isGood = (check: Check) => check.grade === "good";
   const isBad = (check: Check) => check.grade === "bad";
   const marked = verdict.checks.filter((check) => !isGood(check));
-  byId("marked").replaceChildren(...[...marked.filter(isBad), ...marked.filter((check) => !isBad(check))].map(checkItem));
-  byId("checks").replaceChildren(...verdict.checks.filter(isGood).map(checkItem));
+  gradedList("marked", [...marked.filter(isBad), ...marked.filter((check) => !isBad(check))]);
+  gradedList("checks", verdict.checks.filter(isGood));
 }
 
-export function showReport({ state, file, folder }: Report): void {
+/** @param within  as showResult's folder. */
+export function showReport({ state, file, folder }: Report, within: string): void {
   const line = byId("report");
   line.hidden = state === "";
   line.dataset.state = state;
@@ -77,8 +87,12 @@ export function showReport({ state, file, folder }: Report): void {
   if (state === "failed") line.replaceChildren(`No report could be made: see ${folder}/report.txt`);
   if (state !== "made") return;
   const name = file === "report.html" ? "The report" : "What was seen instead";
-  const link = element("a", { href: `export/${file}`, target: "_blank", rel: "noopener" }, name);
+  const link = element("a", { href: `export/${within}${file}`, target: "_blank", rel: "noopener" }, name);
   line.replaceChildren(link, element("span", { class: "soft" }, ` ${folder}/${file}`));
+}
+
+export function gradedList(id: string, checks: Check[]): void {
+  byId(id).replaceChildren(...checks.map(checkItem));
 }
 
 function checkItem(check: Check): HTMLElement {

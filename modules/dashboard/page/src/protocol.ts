@@ -4,15 +4,47 @@ export type Point2 = [number, number];
 export type Point3 = [number, number, number];
 export type Quaternion = [number, number, number, number];
 
+/** A lidar and a camera of a rig of several sensors. */
+export interface PairName {
+  name: string;
+  lidar: string;
+  camera: string;
+}
+
 export interface Rig {
   kind: "rig";
   name: string;
+  /** What all that follows is of; missing where there is but one pair. */
+  pair?: PairName;
   camera: {
     width_px: number;
     height_px: number;
     /** Directions of sight round the image's border, in the camera's frame: as many of each side, its corner first. */
     border: Point3[];
   };
+}
+
+export interface PairRow extends PairName {
+  num_samples: number;
+  /** Which of its sensors sends nothing any more. */
+  silent: string;
+  problem: string;
+  grade: Grade | "";
+  headline: string;
+  worst_error?: number | null;
+  unit?: string;
+  is_enough?: boolean;
+}
+
+/** Of a rig of several sensors. */
+export interface Pairs {
+  kind: "pairs";
+  pairs: PairRow[];
+  weakest: string;
+  /** Why the pairs do not hold the rig together. */
+  problem: string;
+  /** Of the rig that they are joined to. */
+  verdict?: Verdict;
 }
 
 export interface Sample {
@@ -44,6 +76,12 @@ export interface Check {
   text: string;
 }
 
+export interface Verdict {
+  grade: Grade;
+  headline: string;
+  checks: Check[];
+}
+
 export interface Spread {
   mean: number | null;
   std: number | null;
@@ -63,7 +101,7 @@ export interface Result {
   sigma_mm?: (number | null)[];
   held_out?: { centre_px: Spread; centre_mm: Spread };
   predicted?: { range_m: number; corner_mm: number | null }[];
-  verdict?: { grade: Grade; headline: string; checks: Check[] };
+  verdict?: Verdict;
   exports?: string[];
 }
 
@@ -116,6 +154,8 @@ export interface Fault {
   cause: string;
   remedy: string;
   is_grave: boolean;
+  /** The pair that is shown can work all the same. */
+  is_of_others?: boolean;
 }
 
 export interface LidarBoard {
@@ -163,6 +203,7 @@ export interface Refused {
 
 export type Message =
   | Rig
+  | Pairs
   | Samples
   | Result
   | Report
@@ -180,7 +221,8 @@ export const NOT_SEEN = -32768;
 
 export type CommandName = "capture" | "discard" | "finish" | "reset";
 export type Request =
-  | { command: CommandName; sample_id?: number }
+  | { command: CommandName; sample_id?: number; pair?: string }
+  | { watch: string }
   | { shown: "image" | "cloud" };
 
 /** A message of the server, whose large ones are a header in JSON with bytes behind it. */

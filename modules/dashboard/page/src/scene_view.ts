@@ -97,6 +97,13 @@ export class SceneView {
     this.draw();
   }
 
+  /** Nothing of what was shown is left. */
+  clear(): void {
+    this.points.geometry.dispose();
+    this.points.geometry = new THREE.BufferGeometry();
+    for (const group of [this.board, this.samples, this.ghost, this.sight]) this.replace(group, []);
+  }
+
   private showGround(positions_m: Float32Array): void {
     const height_m = this.hasGround ? null : groundHeight(positions_m);
     if (height_m === null) return;

@@ -1,0 +1,82 @@
+// All pairs of a rig of several sensors, and which of them the page shows.
+
+import { byId, element, number, setText } from "./dom.ts";
+import { gradedList } from "./panels.ts";
+import type { PairName, PairRow, Pairs } from "./protocol.ts";
+
+export function pairText({ lidar, camera }: PairName): string {
+  return `${lidar} → ${camera}`;
+}
+
+/** The operator's own choice, which stays (over a reload too: it is the address's fragment); without one the weakest. */
+export class PairChoice {
+  constructor(private own: string | null) {}
+
+  choose(name: string | null): void {
+    this.own = name;
+  }
+
+  isOwn(): boolean {
+    return this.own !== null;
+  }
+
+  wanted({ pairs, weakest }: Pairs): string {
+    return pairs.some(({ name }) => name === this.own) ? this.own! : weakest;
+  }
+}
+
+/** What there is to say of a pair, the gravest first. */
+export function stateOf(row: PairRow): string {
+  if (row.silent) return `${row.silent} is silent`;
+  return row.problem || row.headline || "not heard yet";
+}
+
+export function showPairs({ pairs, weakest, problem, verdict }: Pairs, shown: string, choose: (name: string) => void): void {
+  byId("pairs-panel").hidden = false;
+  const list = byId("pairs");
+  for (const row of pairs) {
+    const button = list.querySelector<HTMLElement>(`[data-pair="${row.name}"]`) ?? addPair(list, row, choose);
+    button.setAttribute("aria-pressed", `${row.name === shown}`);
+    button.dataset.grade = row.silent ? "bad" : row.grade || "none";
+    button.dataset.isWeakest = `${row.name === weakest}`;
+    const [, mark, figures, state] = button.children as unknown as HTMLElement[];
+    put(mark!, row.name === weakest ? "weakest" : "");
+    put(figures!, `${row.num_samples} ${row.num_samples === 1 ? "sample" : "samples"}${errorText(row)}`);
+    put(state!, stateOf(row));
+  }
+  byId("rig-result").hidden = false;
+  byId("rig-verdict").dataset.grade = verdict?.grade ?? "none";
+  setText("rig-verdict", `Rig: ${verdict?.headline ?? "no result yet"}`);
+  setText("rig-problem", problem);
+  const checks = verdict?.checks ?? [];
+  gradedList("rig-bad", checks.filter(({ grade }) => grade === "bad"));
+  gradedList("rig-checks", checks.filter(({ grade }) => grade !== "bad"));
+  byId("rig-checks").parentElement!.hidden = checks.every(({ grade }) => grade === "bad");
+}
+
+/** Where it is worst over the scene, as the guide expects it. */
+function errorText({ worst_error, unit, is_enough }: PairRow): string {
+  if (worst_error === null || worst_error === undefined) return "";
+  return `, ± ${number(worst_error, worst_error < 10 ? 1 : 0, unit!)}${is_enough ? " ✓" : ""}`;
+}
+
+function put(part: HTMLElement, text: string): void {
+  if (part.textContent !== text) part.textContent = text;
+}
+
+function addPair(list: HTMLElement, row: PairRow, choose: (name: string) => void): HTMLElement {
+  const spans = ["name", "mark", "figures", "state"].map((name) => element("span", { class: name }));
+  spans[0]!.textContent = pairText(row);
+  const title = "Samples, and the error that is expected where it is worst over the scene";
+  const button = element("button", { type: "button", "data-pair": row.name, title }, ...spans);
+  button.addEventListener("click", () => choose(row.name));
+  list.append(element("li", {}, button));
+  return button;
+}
+
+/** In a strip that is wider than the screen. */
+export function scrollToPair(name: string): void {
+  const list = byId("pairs");
+  const item = list.querySelector<HTMLElement>(`[data-pair="${name}"]`)?.parentElement;
+  if (item && list.scrollWidth > list.clientWidth) list.scrollTo({ left: item.offsetLeft - list.offsetLeft - 12, behavior: "smooth" });
+}

@@ -96,11 +96,10 @@ void DashboardNode::ToPages(std::string Channels::*channel,
   std::map<std::string, std::vector<PairPage*>> readers;
   for (const auto& page : pages_) readers[page->rig().channels.*channel].push_back(page.get());
   for (const auto& [name, pages] : readers) {
-    bus_.Subscribe<Message>(
-        name, queue, [this, handler, pages = pages](const Message& message) {
-          StepIfDue();
-          for (PairPage* page : pages) (page->*handler)(message);
-        });
+    bus_.Subscribe<Message>(name, queue, [this, handler, pages = pages](const Message& message) {
+      StepIfDue();
+      for (PairPage* page : pages) (page->*handler)(message);
+    });
   }
 }
 
@@ -136,10 +135,8 @@ void DashboardNode::LookAtSessionIfDue() {
   health_.Take(ReadSession(session_folder_, std::time(nullptr)), now);
   ShowPairs(now);
   for (std::size_t i = 0; i < pages_.size(); ++i) {
-    const bool may_make_report =
-        std::none_of(pages_.begin(), pages_.end(), [](const auto& each) {
-          return each->IsMakingReport();
-        });
+    const bool may_make_report = std::none_of(
+        pages_.begin(), pages_.end(), [](const auto& each) { return each->IsMakingReport(); });
     pages_[i]->Look(health_, names_of_others_[i], may_make_report, now);
   }
 }

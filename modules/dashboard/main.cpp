@@ -104,7 +104,8 @@ std::vector<ShownPair> ShownPairs(const std::vector<Rig>& pairs,
     const std::filesystem::path folder = session / PairName(rig.lidar_name, rig.camera_name);
     std::filesystem::create_directories(folder);
     const std::string pair_of_own = own.string() + "#" + rig.lidar_name + "," + rig.camera_name;
-    shown.push_back({rig, folder, ReportCommand(folder, has_own ? pair_of_own : rig.path.string())});
+    shown.push_back(
+        {rig, folder, ReportCommand(folder, has_own ? pair_of_own : rig.path.string())});
   }
   return shown;
 }

@@ -133,9 +133,8 @@ Json VerdictPart(const Message& message) {
   for (const verdict_check_t& check : message.verdict_checks) {
     checks.push_back({{"name", check.name}, {"grade", check.grade}, {"text", check.text}});
   }
-  return {{"grade", message.verdict_grade},
-          {"headline", message.verdict_headline},
-          {"checks", checks}};
+  return {
+      {"grade", message.verdict_grade}, {"headline", message.verdict_headline}, {"checks", checks}};
 }
 
 Json RowPart(const PairRow& row) {
@@ -183,7 +182,8 @@ std::string PairsJson(const std::vector<PairRow>& rows, const rig_extrinsics_t* 
   Json json = Of(Slot::kPairs);
   json["pairs"] = Json::array();
   for (const PairRow& row : rows) json["pairs"].push_back(RowPart(row));
-  json["weakest"] = rig == nullptr || rig->weakest_pair.empty() ? rows.front().name : rig->weakest_pair;
+  json["weakest"] =
+      rig == nullptr || rig->weakest_pair.empty() ? rows.front().name : rig->weakest_pair;
   json["problem"] = rig == nullptr ? "" : rig->problem;
   if (rig != nullptr && !rig->verdict_grade.empty()) json["verdict"] = VerdictPart(*rig);
   return Text(json);

@@ -34,8 +34,8 @@ struct PairRow {
   std::string lidar;
   std::string camera;
   int num_samples = 0;
-  std::string silent;                 ///< Which of its sensors sends nothing; empty if none.
-  const rig_pair_t* result = nullptr;  ///< Null: nothing was heard of one.
+  std::string silent;                      ///< Which of its sensors sends nothing; empty if none.
+  const rig_pair_t* result = nullptr;      ///< Null: nothing was heard of one.
   const next_pose_t* next_pose = nullptr;  ///< The same.
 };
 /// All pairs, what the rig that they are joined to is worth, and the weakest.

@@ -6,7 +6,7 @@
 
 namespace voqcal {
 
-void HandleAll(Bus* bus) {
+void HandleWaiting(Bus* bus) {
   while (bus->HandleOnce(std::chrono::milliseconds(0))) {
   }
 }
@@ -36,12 +36,12 @@ PairChain::PairChain(const Rig& rig,
       assessor_(rig, bus, session_folder, scene_views_) {}
 
 void PairChain::Run() {
-  HandleAll(&bus_);
+  HandleWaiting(&bus_);
   const std::array<Module*, 4> stages = {&selector_, &estimator_, &refiner_, &assessor_};
   for (Module* stage : stages) {
     while (stage->Step()) {
     }
-    HandleAll(&bus_);
+    HandleWaiting(&bus_);
   }
 }
 

@@ -16,7 +16,7 @@
 namespace voqcal {
 
 /// Every message that waits.
-void HandleAll(Bus* bus);
+void HandleWaiting(Bus* bus);
 
 /// What its session is of; nothing came of it yet.
 PairSession SessionOf(const Rig& rig);

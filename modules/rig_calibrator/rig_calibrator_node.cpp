@@ -73,7 +73,7 @@ PairSession RigCalibratorNode::Chain::Calibrate(const samples_t& message,
   bus.Publish(rig.channels.calib_samples, message);
   modules.Run();
   guide.Step();
-  HandleAll(&bus);
+  HandleWaiting(&bus);
   PairSession session = SessionOf(rig);
   if (modules.assessor().HasAssessed(message)) {
     TakeResult(samples, modules.assessor().result(), modules.assessor().problem(), &session);
@@ -214,10 +214,8 @@ void RigCalibratorNode::Start(std::size_t index) {
        samples = std::move(samples),
        sessions = sessions_]() mutable {
         sessions[index] = chain->Calibrate(message, samples);
-        Outcome outcome = {sessions[index],
-                           chain->said,
-                           chain->next_pose,
-                           JoinSessions(sessions, "", made_from_)};
+        Outcome outcome = {
+            sessions[index], chain->said, chain->next_pose, JoinSessions(sessions, "", made_from_)};
         if (is_whole) WriteResult(result_file_, outcome.rig);
         return outcome;
       });

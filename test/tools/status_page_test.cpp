@@ -239,8 +239,7 @@ TEST(StatusPage, ShowsThePairsOfARigAndWhatHelpsThemNext) {
   rig.pairs.push_back(pair);
   page.Take(rig);
   const std::string text = page.Text(At(1));
-  EXPECT_THAT(text,
-              HasSubstr("front_left      23   0.057 deg     2.0 mm  good: Good. (weakest)\n"));
+  EXPECT_THAT(text, HasSubstr("front_left      23   0.057 deg     2.0 mm  good: Good. (next)\n"));
   EXPECT_THAT(text, HasSubstr("  the two never saw the board rest at one time\n"));
   EXPECT_THAT(text, HasSubstr("rig     Good.\nnext    Show the board to front_left.\n"));
   rig.problem = "no pair joins these parts of the rig: front | left";

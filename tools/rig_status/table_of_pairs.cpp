@@ -34,7 +34,7 @@ std::string TableOfPairs(const rig_extrinsics_t& rig) {
                    pair.num_samples,
                    SigmaText(pair).c_str(),
                    VerdictText(pair).c_str(),
-                   pair.name == rig.weakest_pair ? " (weakest)" : "");
+                   pair.name == rig.weakest_pair ? " (next)" : "");
   }
   text += rig.problem.empty() ? "rig     " + rig.verdict_headline + "\n"
                               : "rig     no tree yet: " + rig.problem + "\n";

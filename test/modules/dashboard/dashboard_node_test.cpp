@@ -16,6 +16,7 @@
 #include "support/temporary_folder.hpp"
 #include "voq_selector/voq_selector_node.hpp"
 #include "voqcal/command_t.hpp"
+#include "voqcal/rig_extrinsics_t.hpp"
 
 namespace voqcal {
 namespace {
@@ -350,6 +351,146 @@ TEST_F(DashboardNodeTest, SaysWhatIsWrong) {
   EXPECT_EQ(health["faults"].at(0)["what"], "assessor has failed");
   EXPECT_EQ(health["faults"].at(0)["cause"], "assessor failed: disk full");
   EXPECT_EQ(health["flows"]["lidar"], "nothing yet");
+}
+
+/// A lidar and two cameras.
+class DashboardOfARigTest : public ::testing::Test {
+ protected:
+  static ShownPair PairOf(const std::string& camera, const std::filesystem::path& session) {
+    ShownPair pair;
+    pair.rig = test::TestRig();
+    pair.rig.rig_name = "truck";
+    pair.rig.lidar_name = "roof";
+    pair.rig.camera_name = camera;
+    Channels& channels = pair.rig.channels;
+    for (std::string* channel : {&channels.camera_image, &channels.camera_board}) {
+      *channel += "_" + camera;
+    }
+    for (std::string* channel :
+         {&channels.calib_samples, &channels.calib_event, &channels.next_pose}) {
+      *channel += "_roof_" + camera;
+    }
+    pair.session_folder = session / ("roof_" + camera);
+    pair.report_command = {"/bin/true"};
+    return pair;
+  }
+  static ServerOptions Options() {
+    ServerOptions options = TestOptions();
+    options.pairs = {"roof_front", "roof_rear"};
+    return options;
+  }
+  SessionPlan Plan() const {
+    SessionPlan plan;
+    for (const ShownPair& pair : pairs_) {
+      const std::string& camera = pair.rig.camera_name;
+      Stream stream;
+      stream.channel = pair.rig.channels.camera_image;
+      stream.sender = "camera_driver_" + camera;
+      stream.name = "camera " + camera;
+      plan.streams.push_back(stream);
+      plan.modules.push_back("sample_collector_roof_" + camera);
+    }
+    return plan;
+  }
+  test::SocketClient Page() const {
+    const std::string host = "127.0.0.1:" + std::to_string(server_.port());
+    return {server_.port(), "/" + TestOptions().token + "/socket", {host, "http://" + host}};
+  }
+  static Json Next(test::SocketClient* page, const std::string& kind) {
+    Json json;
+    do {
+      json = page->ReadHeader();
+    } while (json["kind"] != kind);
+    return json;
+  }
+  command_t Clicked(const std::string& request) {
+    test::SocketClient page = Page();
+    page.Send(request);
+    commands_.messages.clear();
+    while (commands_.messages.empty()) {
+      node_.Step();
+      test::HandleAll(&bus_);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return commands_.messages.back();
+  }
+
+  test::TemporaryFolder folder_;
+  std::vector<ShownPair> pairs_ = {PairOf("front", folder_.path()), PairOf("rear", folder_.path())};
+  Bus bus_{"memq://"};
+  DashboardServer server_{Options()};
+  DashboardNode node_{pairs_, Plan(), &bus_, &server_, folder_.path()};
+  test::Inbox<command_t> commands_{&bus_, pairs_[0].rig.channels.calib_command};
+};
+
+TEST_F(DashboardOfARigTest, ShowsThePairThatIsWatchedAndTheTableOfAll) {
+  test::Send(&bus_,
+             "CALIB_SAMPLES_roof_rear",
+             ToMessage(test::NoisySamples(3), 3, false, "its log's hash"));
+  next_pose_t next_pose{};
+  next_pose.worst_error = 12.5;
+  next_pose.unit = "mm";
+  next_pose.is_enough = 1;
+  test::Send(&bus_, "NEXT_POSE_roof_rear", next_pose);
+  rig_extrinsics_t result{};
+  result.weakest_pair = "roof_rear";
+  result.problem = "no pair joins these parts of the rig: roof, front | rear";
+  result.pairs.resize(2);
+  result.num_pairs = 2;
+  result.pairs[0].name = "roof_front";
+  result.pairs[0].verdict_grade = "look";
+  result.pairs[1].name = "roof_rear";
+  result.pairs[1].problem = "not calibrated yet";
+  test::Send(&bus_, "RIG_EXTRINSICS", result);
+  node_.Republish();
+
+  test::SocketClient page = Page();
+  page.Send(R"({"watch": "roof_rear"})");
+  Json rig;
+  do {
+    rig = Next(&page, "rig");
+  } while (rig["pair"]["name"] != "roof_rear");
+  EXPECT_EQ(rig["name"], "truck");
+  EXPECT_EQ(rig["pair"]["camera"], "rear");
+  const Json pairs = Next(&page, "pairs");
+  EXPECT_EQ(pairs["weakest"], "roof_rear");
+  EXPECT_EQ(pairs["problem"], result.problem);
+  EXPECT_EQ(pairs["pairs"][0]["grade"], "look");
+  EXPECT_FALSE(pairs["pairs"][0].contains("worst_error"));
+  EXPECT_EQ(pairs["pairs"][1]["num_samples"], 3);
+  EXPECT_EQ(pairs["pairs"][1]["worst_error"], 12.5);
+  EXPECT_EQ(pairs["pairs"][1]["problem"], "not calibrated yet");
+  EXPECT_EQ(Next(&page, "samples")["samples"].size(), 3U);
+}
+
+TEST_F(DashboardOfARigTest, CommandsOnePairOrAll) {
+  EXPECT_EQ(Clicked(R"({"command": "capture", "pair": "roof_rear"})").pair, "roof_rear");
+  EXPECT_EQ(Clicked(R"({"command": "finish"})").pair, "");
+  // A number names a sample of one pair only.
+  Clicked(R"({"command": "discard", "sample_id": 1, "pair": "roof_rear"})");
+  {
+    test::SocketClient page = Page();
+    page.Send(R"({"command": "discard", "sample_id": 1})");
+    while (node_.counters().count("commands refused: a sample of which pair?") == 0) node_.Step();
+  }
+  EXPECT_THAT(commands_.messages, SizeIs(1));
+}
+
+TEST_F(DashboardOfARigTest, AFaultOfAnotherPairIsMarkedSo) {
+  module_status_t status{};
+  status.module = "sample_collector_roof_rear";
+  status.state = "trouble: The clocks differ; set them";
+  test::Send(&bus_, "MODULE_STATUS", status);
+  node_.Republish();
+  test::SocketClient page = Page();
+  EXPECT_EQ(Next(&page, "modules")["faults"][0]["is_of_others"], true);
+  page.Send(R"({"watch": "roof_rear"})");
+  while (Next(&page, "rig")["pair"]["name"] != "roof_rear") {
+  }
+  const Json faults = Next(&page, "modules")["faults"];
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0]["of"], "sample_collector_roof_rear");
+  EXPECT_FALSE(faults[0].contains("is_of_others"));
 }
 
 }  // namespace

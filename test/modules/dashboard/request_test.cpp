@@ -29,6 +29,15 @@ TEST(ParsePageRequest, ReadsWhatIsDrawn) {
   EXPECT_EQ(ParsePageRequest(R"({"shown": "cloud"})")->command, "");
 }
 
+TEST(ParsePageRequest, ReadsWhichPairIsMeantOrWatched) {
+  const auto request =
+      ParsePageRequest(R"({"command": "discard", "sample_id": 17, "pair": "roof_front"})");
+  ASSERT_TRUE(request) << request.error();
+  EXPECT_EQ(request->pair, "roof_front");
+  EXPECT_EQ(request->watch, "");
+  EXPECT_EQ(ParsePageRequest(R"({"watch": "roof_front"})")->watch, "roof_front");
+}
+
 TEST(ParsePageRequest, RefusesAllElseWithAReason) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "no JSON"},
@@ -50,6 +59,11 @@ TEST(ParsePageRequest, RefusesAllElseWithAReason) {
       {R"({"command": "discard", "sample_id": "1"})", "sample_id"},
       {R"({"command": "discard", "sample_id": 18446744073709551615})", "sample_id"},
       {R"({"command": "discard", "sample_id": 1, "x": 1})", "unknown keys"},
+      {R"({"command": "capture", "pair": 1})", "name of a pair"},
+      {R"({"command": "capture", "pair": "a", "x": 1})", "unknown keys"},
+      {R"({"watch": 1})", "name of a pair"},
+      {R"({"watch": ""})", "name of a pair"},
+      {R"({"watch": "a", "command": "reset"})", "alone"},
       {R"({"shown": "samples"})", "must be"},
       {R"({"shown": 1})", "must be"},
       {R"({"shown": "image", "command": "reset"})", "alone"}};

@@ -296,6 +296,34 @@ TEST_F(DashboardServerTest, TurnsAwayMorePagesThanItServes) {
   EXPECT_NO_THROW(Page());
 }
 
+// Which begins with what the pair is, and has nothing of another.
+TEST(DashboardServer, ShowsAPageThePairThatItAsksFor) {
+  ServerOptions options = TestOptions();
+  options.pairs = {"front", "rear"};
+  DashboardServer server(options);
+  const std::string host = "127.0.0.1:" + std::to_string(server.port());
+  SocketClient page(server.port(), "/" + kToken + "/socket", {host, "http://" + host});
+  for (std::size_t pair = 0; pair < 2; ++pair) {
+    for (const Slot slot : {Slot::kSamples, Slot::kRig}) {
+      server.Show(slot, Numbered(slot, static_cast<int>(pair)), pair);
+    }
+    server.Offer({{options.pairs[pair] + "/file", {"text/plain", options.pairs[pair], true}}},
+                 pair);
+  }
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(page.ReadHeader()["number"], 0);
+  page.Send(R"({"watch": "rear"})");
+  EXPECT_EQ(page.ReadHeader(), Json({{"kind", "rig"}, {"number", 1}}));
+  EXPECT_EQ(page.ReadHeader(), Json({{"kind", "samples"}, {"number", 1}}));
+  EXPECT_EQ(server.num_pages(), 1);
+  EXPECT_EQ(server.num_pages(0), 0);
+  EXPECT_EQ(server.num_pages(1), 1);
+  page.Send(R"({"watch": "left"})");
+  EXPECT_THAT(page.ReadHeader()["reason"].get<std::string>(), HasSubstr("no pair \"left\""));
+  const auto file = Request(server.port(), "/" + kToken + "/export/rear/file", {host, ""});
+  EXPECT_EQ(file.body(), "rear");
+  EXPECT_THAT(std::string(file["Content-Disposition"]), HasSubstr("\"rear_file\""));
+}
+
 TEST(DashboardServer, SaysWhyItCannotListen) {
   const DashboardServer first(TestOptions());
   ServerOptions options = TestOptions();

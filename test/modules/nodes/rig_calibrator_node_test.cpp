@@ -12,6 +12,7 @@
 #include "modules/nodes/chain_test.hpp"
 #include "support/matchers.hpp"
 #include "support/temporary_folder.hpp"
+#include "voqcal/next_pose_t.hpp"
 
 namespace voqcal {
 namespace {
@@ -28,6 +29,7 @@ Rig PairOf(const std::string& lidar, const std::string& camera) {
   rig.lidar_name = lidar;
   rig.camera_name = camera;
   rig.channels.calib_samples += "_" + lidar + "_" + camera;
+  rig.channels.next_pose += "_" + lidar + "_" + camera;
   return rig;
 }
 
@@ -97,6 +99,22 @@ TEST_F(RigCalibratorNodeTest, SaysOfAPairWhatItsOwnModulesWould) {
   ASSERT_THAT(assessments.messages, ::testing::SizeIs(1));
   EXPECT_EQ(assessments.messages[0].samples_revision, 8);
   EXPECT_EQ(assessments.messages[0].num_samples, newest().pairs[1].num_samples);
+}
+
+TEST_F(RigCalibratorNodeTest, GuidesEachPairAndSendsToTheOneThatNeedsSamplesMost) {
+  const test::Inbox<next_pose_t> of_left(&bus_, "NEXT_POSE_front_left");
+  const test::Inbox<next_pose_t> of_right(&bus_, "NEXT_POSE_front_right");
+  Send(0, 8, 8);
+  Send(1, 0, 1);
+  Work();
+  ASSERT_FALSE(of_left.messages.empty());
+  ASSERT_FALSE(of_right.messages.empty());
+  EXPECT_EQ(of_left.messages.back().samples_revision, 8);
+  EXPECT_EQ(newest().weakest_pair, "front_right");
+  EXPECT_EQ(newest().advice, "Show the board to front_right. " + of_right.messages.back().advice);
+  Send(1, 20, 2);
+  Work();
+  EXPECT_EQ(newest().weakest_pair, "front_left");
 }
 
 TEST_F(RigCalibratorNodeTest, WorksOnTheNewestSamplesAloneAndOnThemOnce) {

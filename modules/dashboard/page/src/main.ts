@@ -119,7 +119,7 @@ function showPairName(): void {
   if (!pair) return;
   const isWeakest = pairs?.weakest === pair.name;
   byId("order-of").hidden = false;
-  setText("order-of", `${pairText(pair)}${isWeakest ? ", the weakest pair" : ""}`);
+  setText("order-of", isWeakest ? `Next: ${pairText(pair)}` : pairText(pair));
   setText("result-of", pairText(pair));
   setText("image-title", `Camera ${pair.camera}`);
   setText("scene-title", `Lidar ${pair.lidar}`);

@@ -40,7 +40,7 @@ export function showPairs({ pairs, weakest, problem, verdict }: Pairs, shown: st
     button.dataset.grade = row.silent ? "bad" : row.grade || "none";
     button.dataset.isWeakest = `${row.name === weakest}`;
     const [, mark, figures, state] = button.children as unknown as HTMLElement[];
-    put(mark!, row.name === weakest ? "weakest" : "");
+    put(mark!, row.name === weakest ? "next" : "");
     put(figures!, `${row.num_samples} ${row.num_samples === 1 ? "sample" : "samples"}${errorText(row)}`);
     put(state!, stateOf(row));
   }
@@ -78,5 +78,5 @@ function addPair(list: HTMLElement, row: PairRow, choose: (name: string) => void
 export function scrollToPair(name: string): void {
   const list = byId("pairs");
   const item = list.querySelector<HTMLElement>(`[data-pair="${name}"]`)?.parentElement;
-  if (item && list.scrollWidth > list.clientWidth) list.scrollTo({ left: item.offsetLeft - list.offsetLeft - 12, behavior: "smooth" });
+  if (item && list.scrollWidth > list.clientWidth) list.scrollTo({ left: item.offsetLeft - list.offsetLeft - 12 });
 }

@@ -23,9 +23,9 @@ async function look(name, what) {
   await page.setViewportSize(SIZES[name]);
   await page.evaluate(() => scrollTo(0, 0));
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-  demand(wide <= 0, `${name}: the page is ${wide} px too wide`);
+  demand(wide <= 0, `${name}, ${what}: the page is ${wide} px too wide`);
   const body = await page.evaluate(() => document.body.innerText);
-  demand(!/NaN|undefined|null/.test(body), `${name}: the text has NaN, undefined or null`);
+  demand(!/NaN|undefined|null/.test(body), `${name}, ${what}: the text has NaN, undefined or null`);
   const list = await page.locator("#pairs").boundingBox();
   const image = await page.locator("#image-panel").boundingBox();
   demand(list.y >= 0 && list.y < image.y, `${name}, ${what}: the pairs are at ${list.y} px, the image at ${image.y} px`);

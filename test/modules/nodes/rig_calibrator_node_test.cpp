@@ -112,9 +112,11 @@ TEST_F(RigCalibratorNodeTest, GuidesEachPairAndSendsToTheOneThatNeedsSamplesMost
   EXPECT_EQ(of_left.messages.back().samples_revision, 8);
   EXPECT_EQ(newest().weakest_pair, "front_right");
   EXPECT_EQ(newest().advice, "Show the board to front_right. " + of_right.messages.back().advice);
-  Send(1, 20, 2);
+  Send(1, 8, 2);
+  Send(0, 0, 9);  // a reset
   Work();
   EXPECT_EQ(newest().weakest_pair, "front_left");
+  EXPECT_EQ(of_left.messages.back().samples_revision, 9);
 }
 
 TEST_F(RigCalibratorNodeTest, WorksOnTheNewestSamplesAloneAndOnThemOnce) {

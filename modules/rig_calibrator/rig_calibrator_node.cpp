@@ -47,7 +47,7 @@ void KeepSaid(const std::string& channel,
 std::string AdviceOn(const std::string& pair, const std::optional<next_pose_t>& next) {
   if (next && next->is_enough != 0) return pair + ": " + next->advice;
   const std::string words = next ? next->problem.empty() ? next->advice : next->problem : "";
-  return "Show the board to " + pair + ". " + words;
+  return "Show the board to " + pair + ": " + words;
 }
 
 /// A tree that is not of these samples must not be taken for theirs.
@@ -169,6 +169,7 @@ void RigCalibratorNode::AdviseOnWeakest() {
     if (pair.problem.empty()) need.grade = pair.verdict.grade;
     if (const auto& next = pairs_[i].next_pose) {
       need.is_enough = next->is_enough != 0;
+      need.has_place = next->problem.empty();
       need.worst_error = next->worst_error;
     }
     needs.push_back(need);

@@ -1,8 +1,7 @@
 #include "core/guidance/weakest_pair.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 
 namespace voqcal {
 namespace {
@@ -10,49 +9,74 @@ namespace {
 // By how much more another must be unknown for the operator to be sent there.
 constexpr double kMuchMore = 2.0;
 
-/// 0 for the kind that needs samples most.
-int KindOf(const PairNeed& pair) {
-  if (!pair.grade) return 0;
-  const int of_grade = *pair.grade == Grade::kBad ? 0 : *pair.grade == Grade::kLook ? 1 : 2;
-  return (pair.is_enough ? 4 : 1) + of_grade;
-}
-
-double ErrorOf(const PairNeed& pair) {
-  return std::isnan(pair.worst_error) ? std::numeric_limits<double>::infinity() : pair.worst_error;
-}
-
-bool NeedsMore(const PairNeed& a, const PairNeed& b) {
-  if (KindOf(a) != KindOf(b)) return KindOf(a) < KindOf(b);
-  if (!a.grade) return a.num_samples > b.num_samples;
-  return ErrorOf(a) > ErrorOf(b);
-}
-
-/// Those that have a result.
-std::set<std::string> KnownSensors(const std::vector<PairNeed>& pairs) {
-  std::set<std::string> known;
+/// By sensor, which part of the rig it is in: those that results join.
+std::map<std::string, std::size_t> PartsOf(const std::vector<PairNeed>& pairs) {
+  std::map<std::string, std::size_t> parts;
   for (const PairNeed& pair : pairs) {
-    if (pair.grade) known.insert({pair.from, pair.to});
+    parts.emplace(pair.from, parts.size());
+    parts.emplace(pair.to, parts.size());
   }
-  return known;
+  for (const PairNeed& pair : pairs) {
+    if (!pair.grade) continue;
+    const std::size_t gone = parts[pair.to];
+    for (auto& [sensor, part] : parts) {
+      if (part == gone) part = parts[pair.from];
+    }
+  }
+  return parts;
 }
 
-bool MayStay(const PairNeed& before, const PairNeed& weakest) {
-  if (before.num_samples == 0 || KindOf(before) != KindOf(weakest)) return false;
-  return !before.grade || ErrorOf(weakest) <= kMuchMore * ErrorOf(before);
+/// How much a pair needs samples: the smallest kind most, of one kind the largest size.
+struct Urgency {
+  int kind = 0;
+  double size = 0.0;
+
+  bool IsAbove(const Urgency& other) const {
+    return kind != other.kind ? kind < other.kind : size > other.size;
+  }
+};
+
+constexpr int kIsNotJoined = 0;
+constexpr int kIsNotJoinedAndHasNoPlace = 1;
+constexpr int kIsNotEnough = 2;  // and one more for each better grade
+constexpr int kIsEnough = 5;
+constexpr int kIsNotToBeHelped = 8;
+
+Urgency UrgencyOf(const PairNeed& pair, const std::map<std::string, std::size_t>& parts) {
+  const double error =
+      std::isnan(pair.worst_error) ? std::numeric_limits<double>::infinity() : pair.worst_error;
+  if (!pair.grade) {
+    const bool is_joined = parts.at(pair.from) == parts.at(pair.to);
+    const int kind = is_joined        ? kIsNotToBeHelped
+                     : pair.has_place ? kIsNotJoined
+                                      : kIsNotJoinedAndHasNoPlace;
+    return {kind, static_cast<double>(pair.num_samples)};
+  }
+  const int better = *pair.grade == Grade::kBad ? 0 : *pair.grade == Grade::kLook ? 1 : 2;
+  if (pair.is_enough) return {kIsEnough + better, error};
+  return {pair.has_place ? kIsNotEnough + better : kIsNotToBeHelped, error};
+}
+
+bool MayStay(const PairNeed& pair, const Urgency& before, const Urgency& weakest) {
+  if (pair.num_samples == 0 || before.kind != weakest.kind) return false;
+  return !pair.grade || weakest.size <= kMuchMore * before.size;
 }
 
 }  // namespace
 
 std::optional<std::size_t> WeakestPair(const std::vector<PairNeed>& pairs,
                                        const std::optional<std::size_t>& before) {
-  const std::set<std::string> known = KnownSensors(pairs);
+  const std::map<std::string, std::size_t> parts = PartsOf(pairs);
+  std::vector<Urgency> urgencies;
   std::optional<std::size_t> weakest;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const bool is_joined = known.count(pairs[i].from) != 0 && known.count(pairs[i].to) != 0;
-    if (pairs[i].num_samples == 0 && is_joined) continue;
-    if (!weakest || NeedsMore(pairs[i], pairs[*weakest])) weakest = i;
+  for (const PairNeed& pair : pairs) {
+    urgencies.push_back(UrgencyOf(pair, parts));
+    const std::size_t i = urgencies.size() - 1;
+    if (!weakest || urgencies[i].IsAbove(urgencies[*weakest])) weakest = i;
   }
-  if (before && weakest && MayStay(pairs.at(*before), pairs[*weakest])) return before;
+  if (before && weakest && MayStay(pairs.at(*before), urgencies[*before], urgencies[*weakest])) {
+    return before;
+  }
   return weakest;
 }
 

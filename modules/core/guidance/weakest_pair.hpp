@@ -17,6 +17,7 @@ struct PairNeed {
   int num_samples = 0;
   std::optional<Grade> grade;  ///< Of its verdict; nothing: it has no result yet.
   bool is_enough = false;      ///< The guide says so.
+  bool has_place = true;       ///< It knows where to hold the board next.
   /// Expected over the scene where that is worst; NaN or infinite: not known.
   double worst_error = std::numeric_limits<double>::infinity();
 };
@@ -26,8 +27,9 @@ struct PairNeed {
 /// that the guide does not call enough before those that it does; among them the lower verdict,
 /// then the larger error.
 ///
-/// A pair that no board was ever seen by is left out once both of its sensors have a result with
-/// others: the two may have no view in common, and others join them.
+/// Last comes what more samples would not help: a pair without a result whose two sensors the
+/// results of others join (the two may have no view in common; what seem to be samples of them are
+/// then none), and one with a result for which the guide knows no place.
 ///
 /// Who carries the board is not sent to and fro after each sample: `before` stays, if it has
 /// samples, while no pair is of a worse kind and none of its own kind has more than twice its

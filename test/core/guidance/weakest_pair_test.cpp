@@ -56,18 +56,27 @@ TEST(WeakestPair, AnErrorThatIsNotKnownIsTheLargest) {
   EXPECT_EQ(WeakestPair({With("roof", "front", Grade::kLook, 1e3), unknown}, {}), 1U);
 }
 
-TEST(WeakestPair, IsNoneThatSawNoBoardAndThatOthersJoin) {
-  const std::vector<PairNeed> pairs = {With("roof", "front", Grade::kLook, 9),
-                                       With("roof", "rear", Grade::kLook, 9),
-                                       With("bumper", "front", Grade::kLook, 20),
-                                       Without("bumper", "rear", 0)};
-  EXPECT_EQ(WeakestPair(pairs, {}), 2U);
-  std::vector<PairNeed> seen = pairs;
-  seen[3].num_samples = 1;  // then they do see the same
-  EXPECT_EQ(WeakestPair(seen, {}), 3U);
+TEST(WeakestPair, IsLastOneThatOthersJoin) {
+  const std::vector<PairNeed> pairs = {Enough(With("roof", "front", Grade::kLook, 3)),
+                                       Enough(With("roof", "rear", Grade::kLook, 4)),
+                                       Enough(With("bumper", "front", Grade::kGood, 2)),
+                                       Without("bumper", "rear", 9)};
+  EXPECT_EQ(WeakestPair(pairs, {}), 1U);
+  // Each sensor has a result, but none joins the two halves.
   std::vector<PairNeed> apart = pairs;
-  apart[2] = Without("bumper", "front", 0);
-  EXPECT_EQ(WeakestPair(apart, {}), 2U);
+  apart[2] = With("bumper", "left", Grade::kGood, 2);
+  EXPECT_EQ(WeakestPair(apart, {}), 3U);
+}
+
+TEST(WeakestPair, IsNotOneForWhichTheGuideKnowsNoPlace) {
+  PairNeed bad = With("roof", "front", Grade::kBad, 50);
+  bad.has_place = false;
+  EXPECT_EQ(WeakestPair({bad, Enough(With("roof", "rear", Grade::kGood, 2))}, {}), 1U);
+  // Unless it is needed to join the rig: then the others that would come first.
+  PairNeed none = Without("roof", "left", 5);
+  none.has_place = false;
+  EXPECT_EQ(WeakestPair({none, With("roof", "rear", Grade::kBad, 50)}, {}), 0U);
+  EXPECT_EQ(WeakestPair({none, Without("roof", "rear", 0)}, {}), 1U);
 }
 
 TEST(WeakestPair, StaysWhileNoOtherNeedsMuchMore) {

@@ -111,7 +111,7 @@ TEST_F(RigCalibratorNodeTest, GuidesEachPairAndSendsToTheOneThatNeedsSamplesMost
   ASSERT_FALSE(of_right.messages.empty());
   EXPECT_EQ(of_left.messages.back().samples_revision, 8);
   EXPECT_EQ(newest().weakest_pair, "front_right");
-  EXPECT_EQ(newest().advice, "Show the board to front_right. " + of_right.messages.back().advice);
+  EXPECT_EQ(newest().advice, "Show the board to front_right: " + of_right.messages.back().advice);
   Send(1, 8, 2);
   Send(0, 0, 9);  // a reset
   Work();

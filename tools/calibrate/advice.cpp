@@ -23,10 +23,11 @@ const char* TextOn(CameraBoardFault fault) {
       return "check board.num_corners_x and num_corners_y: the inner corners, along width_m and "
              "height_m";
     case CameraBoardFault::kNoPose:
-      return "check camera.lens_model, fx_px, fy_px, cx_px, cy_px and distortion";
+      return "check camera.lens_model, fx_px, fy_px, cx_px, cy_px and distortion; calibrate_lens "
+             "finds them from these images";
     case CameraBoardFault::kPoorFit:
-      return "check camera.lens_model, fx_px, fy_px, cx_px, cy_px and distortion; is the board "
-             "flat?";
+      return "check camera.lens_model, fx_px, fy_px, cx_px, cy_px and distortion (calibrate_lens "
+             "finds them from these images); is the board flat?";
     case CameraBoardFault::kBlurred:
       return "focus the lens, shorten the exposure, and let the board rest at each place";
     case CameraBoardFault::kGlare:

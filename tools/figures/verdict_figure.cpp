@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/assessment/lens_cause.hpp"
 #include "core/simulation/simulation.hpp"
 #include "figures/figures.hpp"
 #include "figures/real_session.hpp"
@@ -99,7 +100,19 @@ std::string CauseIn(const std::string& problem) {
   return problem.substr(from, problem.find(':', from) - from);
 }
 
-Told Tell(GivenSession session, const Rig& rig) {
+// As the camera's board detector: corners that fit no pose well make no sample, and tell of the lens
+// if they are the most.
+std::optional<LensCause> LensCauseOfRefused(const GivenSession& clean,
+                                            const GivenSession& session,
+                                            double max_rms_px) {
+  if (2 * session.samples.size() >= clean.samples.size()) return {};
+  std::vector<std::vector<Eigen::Vector2d>> views_px;
+  for (const BoardSample& sample : clean.samples) views_px.push_back(sample.camera.corners_px);
+  return FindLensCause(views_px, session.board, session.camera, max_rms_px);
+}
+
+/// @param clean  the session without a fault.
+Told Tell(const GivenSession& clean, GivenSession session, const Rig& rig) {
   CalibrationTask task = rig.Task();
   task.board = session.board;
   task.camera = session.camera;
@@ -115,7 +128,8 @@ Told Tell(GivenSession session, const Rig& rig) {
   told.outcome = Calibrate(samples, {}, task);
   told.headline = told.outcome.problem;
   if (!told.outcome.problem.empty()) {
-    told.cause = CauseIn(told.outcome.problem);
+    const auto lens = LensCauseOfRefused(clean, session, max_rms_px);
+    told.cause = lens ? lens->cause : CauseIn(told.outcome.problem);
     return told;
   }
   told.hidden = told.outcome.calibration.diagnosis.not_judged;
@@ -196,7 +210,7 @@ std::vector<double> SizesOf(const SessionFault& fault,
   if (fault.probe == 0) return {1.0};
   GivenSession probed = session;
   fault.inject(fault.probe, &probed);
-  const double moved = MovedIntervals(clean.outcome, Tell(probed, rig).outcome);
+  const double moved = MovedIntervals(clean.outcome, Tell(session, probed, rig).outcome);
   std::vector<double> sizes;
   for (const double intervals : kIntervals) {
     sizes.push_back(std::min(fault.max_size, fault.probe * intervals / moved));
@@ -209,7 +223,7 @@ class FaultTable {
   explicit FaultTable(const VerdictArgs& args) : args_(args), tallies_(SessionFaults().size()) {}
 
   void Run(const GivenSession& session, const Rig& rig) {
-    const Told clean = Tell(session, rig);
+    const Told clean = Tell(session, session, rig);
     if (!clean.outcome.problem.empty()) return;
     for (std::size_t i = 0; i < tallies_.size(); ++i) {
       const SessionFault& fault = SessionFaults()[i];
@@ -219,7 +233,7 @@ class FaultTable {
       for (std::size_t k = 0; k < sizes.size(); ++k) {
         GivenSession faulty = session;
         fault.inject(sizes[k], &faulty);
-        const Told told = Tell(std::move(faulty), rig);
+        const Told told = Tell(session, std::move(faulty), rig);
         const double moved = MovedIntervals(clean.outcome, told.outcome);
         tallies_[i][k].Add(told, moved, fault);
         if (args_.is_verbose) {
@@ -267,7 +281,8 @@ void PrintClean(const VerdictArgs& args, const BaseSessions& base) {
   int num_caused = 0;
   int num_refused = 0;
   for (int run = 0; run < args.num_clean; ++run) {
-    const Told told = Tell(base.Session(run), base.rig());
+    const GivenSession session = base.Session(run);
+    const Told told = Tell(session, session, base.rig());
     num_caused += told.cause.empty() ? 0 : 1;
     num_refused += told.is_refused ? 1 : 0;
     if (args.is_verbose)

@@ -49,6 +49,7 @@ double MaxEdgeWidthPx(const CameraModel& camera, const CameraBoardOptions& optio
 // Why an image that fits the board still gives no pose to trust; nothing if it does.
 std::optional<CameraBoardMiss> Untrusted(const PlanarPose& fit,
                                          const CameraBoardView& view,
+                                         const std::vector<Eigen::Vector2d>& corners_px,
                                          const CameraBoardOptions& options) {
   const double max_width_px = options.max_edge_width_squares * view.square_px;
   if (view.edge_width_px > max_width_px) {
@@ -63,7 +64,8 @@ std::optional<CameraBoardMiss> Untrusted(const PlanarPose& fit,
                            Measured("reprojection RMS",
                                     fit.reprojection_rms_px,
                                     " px, at most",
-                                    options.max_reprojection_rms_px)};
+                                    options.max_reprojection_rms_px),
+                           corners_px};
   }
   return {};
 }
@@ -141,9 +143,9 @@ Expected<CameraBoard, CameraBoardMiss> DetectCameraBoard(const cv::Mat& image,
   const auto corners_px = TargetOf(board).find_corners(grey, board);
   if (!corners_px) return corners_px.error();
   const auto fit = FitSeenCorners(camera, board.InnerCornersBoardM(), *corners_px);
-  if (!fit) return CameraBoardMiss{CameraBoardFault::kNoPose, ""};
+  if (!fit) return CameraBoardMiss{CameraBoardFault::kNoPose, "", *corners_px};
   const CameraBoardView view = MeasureView(grey, camera, board, fit->T_camera_board, *corners_px);
-  if (const auto miss = Untrusted(*fit, view, options)) return *miss;
+  if (const auto miss = Untrusted(*fit, view, *corners_px, options)) return *miss;
 
   CameraBoard found;
   found.pose = PoseFromTransform(fit->T_camera_board, board);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
 #include "core/board/board_spec.hpp"
@@ -29,6 +31,9 @@ std::string ToString(CameraBoardFault fault);
 struct CameraBoardMiss {
   CameraBoardFault fault = CameraBoardFault::kNoBoard;
   std::string detail;  ///< What was measured: "edge width 12.1 px of squares of 22.0 px, ...".
+  /// Of kNoPose and kPoorFit, which may tell of a wrong lens: the inner corners, in
+  /// BoardSpec::InnerCornersBoardM order; NaN: not seen.
+  std::vector<Eigen::Vector2d> corners_px = {};
 };
 
 /// Why only `part` of a chessboard was found: it goes beyond the image's border, is lost in glare,

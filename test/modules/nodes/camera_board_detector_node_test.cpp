@@ -118,6 +118,24 @@ TEST_F(CameraBoardDetectorNodeTest, DoesNotDecodeWhatCallsItselfHuge) {
   EXPECT_EQ(found()[2].miss, "unreadable image");
 }
 
+TEST_F(CameraBoardDetectorNodeTest, SaysWhichLensItsImagesWouldFit) {
+  Rig said = rig_;
+  said.camera.fx_px /= 2;
+  said.camera.fy_px /= 2;
+  said.camera.cx_px = (said.camera.cx_px + 0.5) / 2 - 0.5;
+  said.camera.cy_px = (said.camera.cy_px + 0.5) / 2 - 0.5;
+  Bus bus{"memq://"};
+  CameraBoardDetectorNode node{said, &bus};
+  const image_t image = ToMessage(ImageOfBoard(rig_), 77, 0);
+  for (int i = 0; i < 4; ++i) test::Send(&bus, said.channels.camera_image, image);
+  EXPECT_EQ(node.State(), "running");
+  test::Send(&bus, said.channels.camera_image, image);
+  EXPECT_THAT(node.State(),
+              ::testing::StartsWith("trouble: the intrinsics are those of images of another size; "
+                                    "give camera.fx_px: "));
+  EXPECT_THAT(node.State(), HasSubstr("(5 of 5 images of the board fit then)"));
+}
+
 TEST_F(CameraBoardDetectorNodeTest, CarriesAndCountsWarnings) {
   cv::Mat blurred;
   cv::GaussianBlur(ImageOfBoard(rig_), blurred, {}, 2.5);

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/board/board_spec.hpp"
+#include "core/camera/camera_model.hpp"
+
+namespace voqcal {
+
+/// What the rig file says of the camera, and should say.
+struct LensCause {
+  std::string cause;   ///< "lens model", "image size", ...: one of a few.
+  std::string claim;   ///< What is wrong, half a sentence.
+  std::string remedy;  ///< The line to put into the rig file.
+  std::size_t num_fitting = 0;  ///< Views of the pattern that fit the camera then.
+};
+
+/// Why images show the pattern, and its corners fit no pose of the board: which answer to
+/// QuestionsAbout the rig makes most of them fit. No lidar is needed to tell: a plane seen through
+/// the wrong lens is none.
+/// @param views_px    of each image the inner corners, in BoardSpec::InnerCornersBoardM order.
+/// @param max_rms_px  of the reprojection, of a view that fits.
+/// @return nothing if there are fewer than five views, or no answer makes most of them fit.
+std::optional<LensCause> FindLensCause(const std::vector<std::vector<Eigen::Vector2d>>& views_px,
+                                       const BoardSpec& board,
+                                       const CameraModel& camera,
+                                       double max_rms_px);
+
+}  // namespace voqcal

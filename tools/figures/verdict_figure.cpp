@@ -100,8 +100,8 @@ std::string CauseIn(const std::string& problem) {
   return problem.substr(from, problem.find(':', from) - from);
 }
 
-// As the camera's board detector: corners that fit no pose well make no sample, and tell of the lens
-// if they are the most.
+// As the camera's board detector: corners that fit no pose well make no sample, and tell of the
+// lens if they are the most.
 std::optional<LensCause> LensCauseOfRefused(const GivenSession& clean,
                                             const GivenSession& session,
                                             double max_rms_px) {

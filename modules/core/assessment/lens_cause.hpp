@@ -14,9 +14,9 @@ namespace voqcal {
 
 /// What the rig file says of the camera, and should say.
 struct LensCause {
-  std::string cause;   ///< "lens model", "image size", ...: one of a few.
-  std::string claim;   ///< What is wrong, half a sentence.
-  std::string remedy;  ///< The line to put into the rig file.
+  std::string cause;            ///< "lens model", "image size", ...: one of a few.
+  std::string claim;            ///< What is wrong, half a sentence.
+  std::string remedy;           ///< The line to put into the rig file.
   std::size_t num_fitting = 0;  ///< Views of the pattern that fit the camera then.
 };
 

@@ -12,24 +12,42 @@ const { PairChoice, stateOf } = await import(`data:text/javascript,${encodeURICo
 const row = (name, more = {}) => ({ name, silent: "", problem: "", grade: "", headline: "", num_samples: 0, ...more });
 const told = (weakest) => ({ kind: "pairs", pairs: [row("roof_front"), row("roof_rear")], weakest, problem: "" });
 
+const wanted = (choice, weakest, shown = null, isBusy = false, nowMs = 0) => choice.wanted(told(weakest), shown, isBusy, nowMs);
+
 test("who has chosen nothing sees the weakest, whichever it is by now", () => {
   const choice = new PairChoice(null);
-  assert.equal(choice.wanted(told("roof_rear")), "roof_rear");
-  assert.equal(choice.wanted(told("roof_front")), "roof_front");
+  assert.equal(wanted(choice, "roof_rear"), "roof_rear");
+  assert.equal(wanted(choice, "roof_front", "roof_rear", false, 5000), "roof_front");
   assert.ok(!choice.isOwn());
+});
+
+test("the page does not turn to and fro, nor away from a sample that was just taken", () => {
+  const choice = new PairChoice(null);
+  assert.equal(wanted(choice, "roof_front", "roof_rear", false, 1000), "roof_front");
+  assert.equal(wanted(choice, "roof_rear", "roof_front", false, 5999), "roof_front");
+  choice.hold(5999);
+  assert.equal(wanted(choice, "roof_rear", "roof_front", false, 10_998), "roof_front");
+  assert.equal(wanted(choice, "roof_rear", "roof_front", false, 10_999), "roof_rear");
+});
+
+test("the page does not turn while a question is open or a command waits for its answer", () => {
+  const choice = new PairChoice(null);
+  assert.equal(wanted(choice, "roof_rear", "roof_front", true, 1e6), "roof_front");
+  assert.equal(wanted(choice, "roof_rear", "roof_front", false, 1e6), "roof_rear");
 });
 
 test("an own choice stays, until it is given up", () => {
   const choice = new PairChoice(null);
   choice.choose("roof_front");
-  assert.equal(choice.wanted(told("roof_rear")), "roof_front");
+  assert.equal(wanted(choice, "roof_rear", "roof_rear", true), "roof_front");
   assert.ok(choice.isOwn());
+  choice.hold(0);
   choice.choose(null);
-  assert.equal(choice.wanted(told("roof_rear")), "roof_rear");
+  assert.equal(wanted(choice, "roof_rear", "roof_front"), "roof_rear");
 });
 
 test("of an address that names no pair of this rig the weakest is shown", () => {
-  assert.equal(new PairChoice("bumper_left").wanted(told("roof_rear")), "roof_rear");
+  assert.equal(wanted(new PairChoice("bumper_left"), "roof_rear"), "roof_rear");
 });
 
 test("a silent sensor is told before a problem, that before a verdict", () => {

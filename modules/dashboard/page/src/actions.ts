@@ -21,6 +21,8 @@ const ANSWERS: Record<CommandName, string[]> = {
   reset: ["reset"],
 };
 const MOMENT_MS = 400;
+/** What is clicked so soon after the page turned to another pair by itself was meant for the one before. */
+const TURN_MS = 800;
 const GIVE_UP_MS = 30_000;
 
 export class Actions {
@@ -34,6 +36,7 @@ export class Actions {
   private hasAnySamples = false;
   /** Which is shown; null where there is but one. */
   private pair: PairName | null = null;
+  private turnedAtMs = -Infinity;
 
   constructor(private readonly sendRequest: (request: Request) => boolean) {
     for (const command of ["capture", "discard"] as const) {
@@ -41,10 +44,15 @@ export class Actions {
     }
     byId("finish").addEventListener("click", () => this.send({ command: "finish" }));
     const confirm = byId<HTMLDialogElement>("confirm-reset");
-    byId("reset").addEventListener("click", () => confirm.showModal());
+    let named: PairName | null = null;
+    byId("reset").addEventListener("click", () => {
+      named = this.pair;
+      if (named) nameInConfirm(named);
+      confirm.showModal();
+    });
     confirm.addEventListener("close", () => {
       if (confirm.returnValue === "reset") this.send({ command: "reset" });
-      if (confirm.returnValue === "pair") this.sendOfPair({ command: "reset" });
+      if (confirm.returnValue === "pair") this.send({ command: "reset", pair: named!.name });
       confirm.returnValue = "";
     });
     const exports = byId<HTMLDialogElement>("export-dialog");
@@ -54,6 +62,7 @@ export class Actions {
 
   /** What is of samples is of the pair that is shown. */
   sendOfPair(request: { command: CommandName; sample_id?: number }): void {
+    if (performance.now() < this.turnedAtMs + TURN_MS) return this.say(`Not sent: this is ${pairText(this.pair!)} by now`);
     this.send(this.pair ? { ...request, pair: this.pair.name } : request);
   }
 
@@ -89,17 +98,22 @@ export class Actions {
     byId("finish").classList.toggle("main", isEnough);
   }
 
-  /** What comes from now on is of this one. */
-  setPair(pair: PairName): void {
+  /** Something is being asked or waits for its answer: it is of the pair that is shown. */
+  isBusy(): boolean {
+    return this.waitingFor !== null || document.querySelector("dialog[open]") !== null;
+  }
+
+  /**
+   * What comes from now on is of this one.
+   * @param isOwnChoice  of who clicks; else the page turned by itself.
+   */
+  setPair(pair: PairName, isOwnChoice: boolean): void {
+    const isTurn = this.pair !== null && !isOwnChoice;
+    this.turnedAtMs = isTurn ? performance.now() : -Infinity;
     this.pair = pair;
     this.news = new News();
     this.stopWaiting();
     this.say("");
-    const resetPair = byId("reset-pair");
-    resetPair.hidden = false;
-    resetPair.textContent = `Reset ${pairText(pair)} alone`;
-    setText("reset-all", "Reset all pairs");
-    setText("confirm-text", "All pairs begin anew, or this one alone.");
   }
 
   takePairs({ pairs }: Pairs): void {
@@ -112,15 +126,17 @@ export class Actions {
     this.enable();
   }
 
-  takeEvents({ events }: Events): void {
+  /** @return whether they tell of a sample that was taken. */
+  takeEvents({ events }: Events): boolean {
     const news = this.news.since(events);
     // Rejects come by the second: they are news only to who waits for a sample.
     const told = news.find((event) => event.event !== "rejected" || this.waitingFor !== null);
     if (told) this.say(eventText(told));
-    if (news.some((event) => event.event === "accepted")) signalTaken();
-    if (this.waitingFor === null) return;
-    const answers = ANSWERS[this.waitingFor];
+    const isTaken = news.some((event) => event.event === "accepted");
+    if (isTaken) signalTaken();
+    const answers = this.waitingFor === null ? [] : ANSWERS[this.waitingFor];
     if (news.some((event) => answers.includes(event.event))) this.stopWaiting();
+    return isTaken;
   }
 
   private enable(): void {
@@ -148,4 +164,11 @@ export class Actions {
     if (isTyping || event.key.toLowerCase() !== "c" || document.querySelector("dialog[open]")) return;
     byId("capture").click();
   }
+}
+
+function nameInConfirm(pair: PairName): void {
+  byId("reset-pair").hidden = false;
+  setText("reset-pair", `Reset ${pairText(pair)} alone`);
+  setText("reset-all", "Reset all pairs");
+  setText("confirm-text", `All pairs begin anew, or ${pairText(pair)} alone.`);
 }

@@ -20,7 +20,8 @@ const coverage = new Coverage();
 const scene = makeSceneView();
 const connection = new Connection(take, (state) => {
   connectionState = state;
-  if (state === "live") asked = null;
+  // A new connection shows the first pair until it is asked for another.
+  if (state === "live") asked = pair && connection.send({ watch: pair.name }) ? pair.name : null;
   showHealth();
 });
 const actions = new Actions((request) => connection.send(request));
@@ -99,20 +100,26 @@ function showEnough(): void {
 function choosePair(name: string | null): void {
   choice.choose(name);
   history.replaceState(null, "", name === null ? location.pathname : `#${encodeURIComponent(name)}`);
-  if (pairs) takePairs(pairs);
+  followPair();
 }
 
 function takePairs(message: Pairs): void {
   pairs = message;
   actions.takePairs(message);
-  const wanted = choice.wanted(message);
-  byId<HTMLInputElement>("follows").checked = !choice.isOwn();
-  const isOther = wanted !== asked && connection.send({ watch: wanted });
-  if (isOther) asked = wanted;
   showPairs(message, pair?.name ?? "", choosePair);
-  if (isOther) scrollToPair(wanted);
+  followPair();
   showPairName();
   showEnough();
+}
+
+/** Asks for the pair that is to be shown, if it is another than was asked for last. */
+function followPair(): void {
+  if (!pairs) return;
+  const wanted = choice.wanted(pairs, asked, actions.isBusy(), performance.now());
+  byId<HTMLInputElement>("follows").checked = !choice.isOwn();
+  if (wanted === asked || !connection.send({ watch: wanted })) return;
+  asked = wanted;
+  scrollToPair(wanted);
 }
 
 function showPairName(): void {
@@ -137,7 +144,7 @@ function showPair(shown: PairName): void {
   showFirstGuidance();
   setText("camera-state", "nothing heard");
   setText("lidar-state", "nothing heard");
-  actions.setPair(shown);
+  actions.setPair(shown, choice.isOwn() && shown.name === asked);
   take({ kind: "samples", revision: 0, is_finished: false, samples: [] });
   take({ kind: "result", working_on: "" });
   take({ kind: "report", state: "", file: "", folder: "" });
@@ -203,7 +210,7 @@ function take(message: Message): void {
       break;
     case "events":
       showEvents(message);
-      actions.takeEvents(message);
+      if (actions.takeEvents(message)) choice.hold(performance.now());
       break;
     case "modules":
       modules = message;
@@ -217,7 +224,10 @@ function take(message: Message): void {
   }
 }
 
-setInterval(showHealth, 500);
+setInterval(() => {
+  showHealth();
+  followPair();
+}, 500);
 const isColoured = byId<HTMLInputElement>("is-coloured");
 scene?.colourBy((cloud, point) => (isColoured.checked ? image.colourOf(cloud, point) : null));
 byId("follows").addEventListener("change", (event) => {

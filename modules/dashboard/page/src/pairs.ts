@@ -8,20 +8,39 @@ export function pairText({ lidar, camera }: PairName): string {
   return `${lidar} → ${camera}`;
 }
 
+/** A pair that the page turned to, or that a sample was taken of, is not taken away at once: time to see it and to discard. */
+const HOLD_MS = 5000;
+
 /** The operator's own choice, which stays (over a reload too: it is the address's fragment); without one the weakest. */
 export class PairChoice {
+  private heldUntilMs = 0;
+
   constructor(private own: string | null) {}
 
   choose(name: string | null): void {
     this.own = name;
+    this.heldUntilMs = 0;
   }
 
   isOwn(): boolean {
     return this.own !== null;
   }
 
-  wanted({ pairs, weakest }: Pairs): string {
-    return pairs.some(({ name }) => name === this.own) ? this.own! : weakest;
+  /** The page does not turn to another pair by itself for some seconds from `nowMs` on. */
+  hold(nowMs: number): void {
+    this.heldUntilMs = nowMs + HOLD_MS;
+  }
+
+  /**
+   * @param shown   which the page shows by now; null: none yet.
+   * @param isBusy  something was asked of that one which is not answered yet.
+   */
+  wanted({ pairs, weakest }: Pairs, shown: string | null, isBusy: boolean, nowMs: number): string {
+    const has = (name: string | null) => pairs.some((row) => row.name === name);
+    if (has(this.own)) return this.own!;
+    if (has(shown) && (shown === weakest || isBusy || nowMs < this.heldUntilMs)) return shown!;
+    this.hold(nowMs);
+    return weakest;
   }
 }
 

@@ -29,7 +29,7 @@ std::map<std::string, std::size_t> PartsOf(const std::vector<PairNeed>& pairs) {
 /// How much a pair needs samples: the smallest kind most, of one kind the largest size.
 struct Urgency {
   int kind = 0;
-  double size = 0.0;
+  double size = 0.0;  ///< Of kinds with a result the error, else the number of samples.
 
   bool IsAbove(const Urgency& other) const {
     return kind != other.kind ? kind < other.kind : size > other.size;
@@ -40,21 +40,25 @@ constexpr int kIsNotJoined = 0;
 constexpr int kIsNotJoinedAndHasNoPlace = 1;
 constexpr int kIsNotEnough = 2;  // and one more for each better grade
 constexpr int kIsEnough = 5;
-constexpr int kIsNotToBeHelped = 8;
+constexpr int kHasNoPlace = 8;
+constexpr int kIsJoinedByOthers = 9;
+constexpr int kCannotBeSampled = 10;  // and one more without a result
 
 Urgency UrgencyOf(const PairNeed& pair, const std::map<std::string, std::size_t>& parts) {
   const double error =
       std::isnan(pair.worst_error) ? std::numeric_limits<double>::infinity() : pair.worst_error;
   if (!pair.grade) {
     const bool is_joined = parts.at(pair.from) == parts.at(pair.to);
-    const int kind = is_joined        ? kIsNotToBeHelped
-                     : pair.has_place ? kIsNotJoined
-                                      : kIsNotJoinedAndHasNoPlace;
+    const int kind = !pair.can_be_sampled ? kCannotBeSampled + 1
+                     : is_joined          ? kIsJoinedByOthers
+                     : pair.has_place     ? kIsNotJoined
+                                          : kIsNotJoinedAndHasNoPlace;
     return {kind, static_cast<double>(pair.num_samples)};
   }
+  if (!pair.can_be_sampled) return {kCannotBeSampled, error};
   const int better = *pair.grade == Grade::kBad ? 0 : *pair.grade == Grade::kLook ? 1 : 2;
   if (pair.is_enough) return {kIsEnough + better, error};
-  return {pair.has_place ? kIsNotEnough + better : kIsNotToBeHelped, error};
+  return {pair.has_place ? kIsNotEnough + better : kHasNoPlace, error};
 }
 
 bool MayStay(const PairNeed& pair, const Urgency& before, const Urgency& weakest) {

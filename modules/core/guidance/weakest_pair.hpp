@@ -18,7 +18,9 @@ struct PairNeed {
   std::optional<Grade> grade;  ///< Of its verdict; nothing: it has no result yet.
   bool is_enough = false;      ///< The guide says so.
   bool has_place = true;       ///< It knows where to hold the board next.
-  /// Expected over the scene where that is worst; NaN or infinite: not known.
+  bool can_be_sampled = true;  ///< Its sensors and their detectors send, as far as is known.
+  /// Expected over the scene where that is worst, in the unit of the rig's tolerance (mm or px),
+  /// which is one for all its pairs; NaN or infinite: not known.
   double worst_error = std::numeric_limits<double>::infinity();
 };
 
@@ -27,9 +29,10 @@ struct PairNeed {
 /// that the guide does not call enough before those that it does; among them the lower verdict,
 /// then the larger error.
 ///
-/// Last comes what more samples would not help: a pair without a result whose two sensors the
-/// results of others join (the two may have no view in common; what seem to be samples of them are
-/// then none), and one with a result for which the guide knows no place.
+/// Last comes what more samples would not help: one with a result for which the guide knows no
+/// place, then a pair without a result whose two sensors the results of others join (the two may
+/// have no view in common; what seem to be samples of them are then none), and behind all what
+/// cannot be sampled.
 ///
 /// Who carries the board is not sent to and fro after each sample: `before` stays, if it has
 /// samples, while no pair is of a worse kind and none of its own kind has more than twice its

@@ -79,6 +79,24 @@ TEST(WeakestPair, IsNotOneForWhichTheGuideKnowsNoPlace) {
   EXPECT_EQ(WeakestPair({none, Without("roof", "rear", 0)}, {}), 1U);
 }
 
+// Samples are not compared with errors.
+TEST(WeakestPair, WhatHasAResultButNoPlaceComesBeforeWhatOthersJoin) {
+  PairNeed stuck = Enough(With("roof", "front", Grade::kGood, 2));
+  stuck.is_enough = stuck.has_place = false;
+  EXPECT_EQ(WeakestPair({Without("roof", "front", 50), stuck}, {}), 1U);
+}
+
+TEST(WeakestPair, IsNotOneThatCannotBeSampled) {
+  PairNeed dead = Without("roof", "rear", 9);
+  dead.can_be_sampled = false;
+  PairNeed bad = With("roof", "left", Grade::kBad, 50);
+  bad.can_be_sampled = false;
+  const PairNeed enough = Enough(With("roof", "front", Grade::kGood, 2));
+  EXPECT_EQ(WeakestPair({dead, bad, enough}, {}), 2U);
+  EXPECT_EQ(WeakestPair({dead, bad, enough}, 1), 2U);
+  EXPECT_EQ(WeakestPair({dead, bad, Without("bumper", "left", 0)}, {}), 2U);
+}
+
 TEST(WeakestPair, StaysWhileNoOtherNeedsMuchMore) {
   const PairNeed front = With("roof", "front", Grade::kLook, 10);
   EXPECT_EQ(WeakestPair({front, With("roof", "left", Grade::kLook, 20)}, 0), 0U);

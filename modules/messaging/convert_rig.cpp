@@ -82,4 +82,20 @@ rig_extrinsics_t ToMessage(const RigExtrinsics& result) {
   return message;
 }
 
+PairNeed NeedOf(const rig_pair_t& pair, const next_pose_t* next) {
+  PairNeed need;
+  need.from = pair.from;
+  need.to = pair.to;
+  need.num_samples = pair.num_samples;
+  for (const Grade grade : {Grade::kGood, Grade::kLook, Grade::kBad}) {
+    if (pair.verdict_grade == ToString(grade)) need.grade = grade;
+  }
+  if (next != nullptr) {
+    need.is_enough = next->is_enough != 0;
+    need.has_place = next->problem.empty();
+    need.worst_error = next->worst_error;
+  }
+  return need;
+}
+
 }  // namespace voqcal

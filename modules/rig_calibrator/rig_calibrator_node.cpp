@@ -45,9 +45,10 @@ void KeepSaid(const std::string& channel,
 
 /// To the weakest of all pairs.
 std::string AdviceOn(const std::string& pair, const std::optional<next_pose_t>& next) {
-  if (next && next->is_enough != 0) return pair + ": " + next->advice;
-  const std::string words = next ? next->problem.empty() ? next->advice : next->problem : "";
-  return "Show the board to " + pair + ": " + words;
+  if (!next) return "Show the board to " + pair + ".";
+  if (next->is_enough != 0) return pair + ": " + next->advice;
+  if (!next->problem.empty()) return pair + ": " + next->problem;
+  return "Show the board to " + pair + ": " + next->advice;
 }
 
 /// A tree that is not of these samples must not be taken for theirs.
@@ -150,6 +151,7 @@ void RigCalibratorNode::Republish() {
     }
   }
   AdviseOnWeakest();
+  CountRevision();
   bus_.Publish(channel_, message_);
   for (const Pair& pair : pairs_) {
     for (const auto& [channel, bytes] : pair.said) {
@@ -158,21 +160,20 @@ void RigCalibratorNode::Republish() {
   }
 }
 
+void RigCalibratorNode::CountRevision() {
+  rig_extrinsics_t content = message_;
+  content.revision = 0;
+  std::vector<std::uint8_t> bytes = EncodeMessage(content);
+  if (bytes != content_) ++revision_;
+  content_ = std::move(bytes);
+  message_.revision = revision_;
+}
+
 void RigCalibratorNode::AdviseOnWeakest() {
   std::vector<PairNeed> needs;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const CalibratedPair& pair = sessions_[i].pair;
-    PairNeed need;
-    need.from = sessions_[i].lidar;
-    need.to = sessions_[i].camera;
-    need.num_samples = message_.pairs[i].num_samples;
-    if (pair.problem.empty()) need.grade = pair.verdict.grade;
-    if (const auto& next = pairs_[i].next_pose) {
-      need.is_enough = next->is_enough != 0;
-      need.has_place = next->problem.empty();
-      need.worst_error = next->worst_error;
-    }
-    needs.push_back(need);
+    const auto& next = pairs_[i].next_pose;
+    needs.push_back(NeedOf(message_.pairs[i], next ? &*next : nullptr));
   }
   weakest_ = WeakestPair(needs, weakest_);
   message_.weakest_pair = weakest_ ? pairs_[*weakest_].name : "";
@@ -227,9 +228,7 @@ void RigCalibratorNode::Take(const Outcome& outcome) {
   pairs_[working_on_].said = outcome.said;
   pairs_[working_on_].next_pose = outcome.next_pose;
   Count(outcome.session.pair.problem.empty() ? "calibrations" : "without a result");
-  const std::int64_t revision = message_.revision + 1;
   message_ = ToMessage(outcome.rig);
-  message_.revision = revision;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {  // which come before those of two cameras
     const MadeOf& made_of = pairs_[i].made_of;
     message_.utime = std::max(message_.utime, made_of.utime);

@@ -94,6 +94,8 @@ class RigCalibratorNode : public Module {
   void Take(const Outcome& outcome);
   /// Says in `message_` which pair is the weakest, and what helps it.
   void AdviseOnWeakest();
+  /// Gives `message_` a new revision if it is not what was said last.
+  void CountRevision();
 
   Bus& bus_;
   std::string channel_;
@@ -105,6 +107,8 @@ class RigCalibratorNode : public Module {
   std::size_t working_on_ = 0;  ///< Or worked on last.
   std::optional<std::size_t> weakest_;
   rig_extrinsics_t message_{};
+  std::vector<std::uint8_t> content_;  ///< Of what was said last, but for its revision...
+  std::int64_t revision_ = 0;          ///< ...which is this.
 };
 
 }  // namespace voqcal

@@ -162,6 +162,42 @@ TEST_F(RigCalibratorNodeTest, APairThatWaitsIsToldWithItsSamples) {
   EXPECT_EQ(newest().pairs[1].problem, "not calibrated yet");
 }
 
+TEST_F(RigCalibratorNodeTest, CountsARevisionForEachChangeOfWhatItSays) {
+  const auto say = [this] {
+    node_.Republish();
+    test::HandleAll(&bus_);
+    return newest();
+  };
+  const rig_extrinsics_t first = say();
+  EXPECT_EQ(first.advice, "Show the board to front_left.");
+  EXPECT_EQ(say().revision, first.revision);
+  Send(1, 9, 9);  // not calibrated yet, but the weakest is the one that has begun
+  const rig_extrinsics_t second = say();
+  EXPECT_EQ(second.weakest_pair, "front_right");
+  EXPECT_EQ(second.revision, first.revision + 1);
+  EXPECT_EQ(say().revision, second.revision);
+}
+
+TEST_F(RigCalibratorNodeTest, OrdersNoBoardShownWhereItKnowsNoPlace) {
+  std::vector<Rig> blind = pairs_;
+  for (Rig& rig : blind)
+    rig.pose_guide.limits.max_distance_m = rig.pose_guide.limits.min_distance_m = 1e4;
+  const test::TemporaryFolder folder;
+  Bus bus("memq://");
+  RigCalibratorNode node(blind, &bus, folder.path());
+  const test::Inbox<rig_extrinsics_t> results(&bus, "RIG_EXTRINSICS");
+  for (const Rig& rig : blind) {
+    test::Send(&bus, rig.channels.calib_samples, ToMessage({}, 1, false, "hash"));
+  }
+  do {
+    node.Step();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  } while (node.NextStep());
+  test::HandleAll(&bus);
+  EXPECT_THAT(results.messages.back().advice,
+              ::testing::StartsWith("front_left: nowhere can the board be held"));
+}
+
 TEST_F(RigCalibratorNodeTest, AMessageThatContradictsItselfIsCounted) {
   samples_t broken = ToMessage(test::NoisySamples(4), 4, false, "hash");
   broken.samples[0].lidar.num_points = 1;

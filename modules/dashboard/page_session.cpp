@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -69,22 +70,29 @@ void PageSession::OnRead(beast::error_code error) {
 void PageSession::Take(const std::string& text) {
   const auto request =
       stream_.got_text() ? ParsePageRequest(text) : std::string("a request is a message of text");
-  if (!request) {
-    refusal_ = Refusal(request.error());
-  } else if (!request->watch.empty()) {
-    const auto& names = hub_->options.pairs;
-    const auto found = std::find(names.begin(), names.end(), request->watch);
-    if (found != names.end()) {
-      Watch(static_cast<std::size_t>(found - names.begin()));
-    } else {
-      refusal_ = Refusal("there is no pair \"" + request->watch + "\"");
-    }
-  } else if (request->command.empty()) {
-    is_drawing_[static_cast<std::size_t>(request->shown)] = false;
-  } else if (!hub_->commands.Add(*request)) {
-    refusal_ = Refusal("too many commands wait already: try again");
-  }
+  const std::string reason = request ? Do(*request) : request.error();
+  if (!reason.empty()) refusal_ = Refusal(reason);
   SendNext();
+}
+
+// A number says which sample only with its pair.
+std::string PageSession::Do(const PageRequest& request) {
+  const std::vector<std::string>& names = hub_->options.pairs;
+  for (const std::string& name : {request.watch, request.pair}) {
+    const bool is_known = name.empty() || std::count(names.begin(), names.end(), name) > 0;
+    if (!is_known) return "there is no pair \"" + name + "\"";
+  }
+  if (!request.watch.empty()) {
+    const auto found = std::find(names.begin(), names.end(), request.watch);
+    Watch(static_cast<std::size_t>(found - names.begin()));
+  } else if (request.command.empty()) {
+    is_drawing_[static_cast<std::size_t>(request.shown)] = false;
+  } else if (request.command == "discard" && request.pair.empty() && names.size() > 1) {
+    return "\"discard\" is of which pair?";
+  } else if (!hub_->commands.Add(request)) {
+    return "too many commands wait already: try again";
+  }
+  return "";
 }
 
 void PageSession::Watch(std::size_t pair) {

@@ -31,6 +31,8 @@ class PageSession : public Page, public std::enable_shared_from_this<PageSession
   void Read();
   void OnRead(boost::beast::error_code error);
   void Take(const std::string& text);
+  /// @return why it was refused; empty if it was done or handed over.
+  std::string Do(const PageRequest& request);
   /// Shows a pair from its first slot on.
   void Watch(std::size_t pair);
   void SendNext();

@@ -44,8 +44,8 @@ Expected<PageRequest, std::string> ReadCommand(const Json& json) {
     return std::string("unknown keys beside \"command\"");
   }
   if (has_pair) {
-    if (!json["pair"].is_string()) return std::string("\"pair\" is the name of a pair");
-    request.pair = json["pair"].get<std::string>();
+    if (json["pair"].is_string()) request.pair = json["pair"].get<std::string>();
+    if (request.pair.empty()) return std::string("\"pair\" is the name of a pair");
   }
   if (!has_sample) return request;
   // Beyond 2^53 JavaScript's numbers are not exact.
@@ -69,7 +69,7 @@ Expected<PageRequest, std::string> ParsePageRequest(std::string_view text) {
   if (json.contains("shown")) return ReadShown(json);
   if (json.contains("watch")) return ReadWatch(json);
   if (json.contains("command")) return ReadCommand(json);
-  return std::string("the request has neither \"command\" nor \"shown\"");
+  return std::string("the request has none of \"command\", \"watch\" and \"shown\"");
 }
 
 }  // namespace voqcal

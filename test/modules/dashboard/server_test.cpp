@@ -319,6 +319,11 @@ TEST(DashboardServer, ShowsAPageThePairThatItAsksFor) {
   EXPECT_EQ(server.num_pages(1), 1);
   page.Send(R"({"watch": "left"})");
   EXPECT_THAT(page.ReadHeader()["reason"].get<std::string>(), HasSubstr("no pair \"left\""));
+  page.Send(R"({"command": "reset", "pair": "left"})");
+  EXPECT_THAT(page.ReadHeader()["reason"].get<std::string>(), HasSubstr("no pair \"left\""));
+  page.Send(R"({"command": "discard", "sample_id": 1})");
+  EXPECT_THAT(page.ReadHeader()["reason"].get<std::string>(), HasSubstr("which pair"));
+  EXPECT_TRUE(server.TakeCommands().empty());
   const auto file = Request(server.port(), "/" + kToken + "/export/rear/file", {host, ""});
   EXPECT_EQ(file.body(), "rear");
   EXPECT_THAT(std::string(file["Content-Disposition"]), HasSubstr("\"rear_file\""));

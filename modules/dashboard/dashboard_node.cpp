@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <ctime>
+#include <iterator>
 #include <map>
 #include <utility>
 
+#include "core/guidance/weakest_pair.hpp"
 #include "core/sensor_network/sensor_pair.hpp"
 #include "health/session_programs.hpp"
+#include "messaging/convert_rig.hpp"
 #include "messaging/wall_clock.hpp"
 #include "voqcal/command_t.hpp"
 
@@ -57,17 +60,6 @@ DashboardNode::DashboardNode(const std::vector<ShownPair>& pairs,
   Subscribe();
   ShowPairs(Clock::now());
 }
-
-DashboardNode::DashboardNode(const Rig& rig,
-                             Bus* bus,
-                             DashboardServer* server,
-                             const std::filesystem::path& session_folder,
-                             const std::vector<std::string>& report_command)
-    : DashboardNode({{rig, session_folder, report_command}},
-                    PlanOfPair(rig.channels),
-                    bus,
-                    server,
-                    session_folder) {}
 
 void DashboardNode::Subscribe() {
   ToPages(&Channels::camera_image, Queue::kState, &PairPage::OnImage);
@@ -144,32 +136,77 @@ void DashboardNode::LookAtSessionIfDue() {
 void DashboardNode::ShowPairs(Clock::time_point now) {
   if (pages_.size() == 1) return;
   std::vector<PairRow> rows;
-  for (std::size_t i = 0; i < pages_.size(); ++i) {
-    const PairPage& page = *pages_[i];
-    PairRow row;
-    row.name = NameOf(page.rig());
-    row.lidar = page.rig().lidar_name;
-    row.camera = page.rig().camera_name;
-    row.num_samples = page.num_samples();
-    row.silent = SilentSensor(page.rig(), now);
-    if (page.next_pose()) row.next_pose = &*page.next_pose();
-    if (rig_) {
-      const auto result =
-          std::find_if(rig_->pairs.begin(), rig_->pairs.end(), [&](const rig_pair_t& each) {
-            return each.name == row.name;
-          });
-      if (result != rig_->pairs.end()) row.result = &*result;
-    }
-    rows.push_back(row);
-  }
-  const std::string json = PairsJson(rows, rig_ ? &*rig_ : nullptr);
+  for (const auto& page : pages_) rows.push_back(RowOf(*page, now));
+  const std::string json = PairsJson(rows, rig_ ? &*rig_ : nullptr, NextPair(rows, now));
   for (const auto& page : pages_) page->Show(Slot::kPairs, json);
 }
 
-std::string DashboardNode::SilentSensor(const Rig& rig, Clock::time_point now) const {
-  if (health_.FlowOf(rig.channels.lidar_points, now) == Flow::kSilent) return rig.lidar_name;
-  if (health_.FlowOf(rig.channels.camera_image, now) == Flow::kSilent) return rig.camera_name;
+// What is of samples that a reset took away says nothing of those that came since.
+PairRow DashboardNode::RowOf(const PairPage& page, Clock::time_point now) const {
+  const Rig& rig = page.rig();
+  PairRow row;
+  row.name = NameOf(rig);
+  row.lidar = rig.lidar_name;
+  row.camera = rig.camera_name;
+  row.num_samples = page.num_samples();
+  row.silent = SensorThatIs(Flow::kSilent, rig, now);
+  row.unheard = SensorThatIs(Flow::kNothingYet, rig, now);
+  const auto& next = page.next_pose();
+  if (next && page.IsOfThisSession(*next)) row.next_pose = &*next;
+  const rig_pair_t* result = ResultOf(rig);
+  if (result == nullptr) return row;
+  const bool is_waiting = result->samples_revision < 0;
+  row.is_current = is_waiting || page.IsCurrent(*result);
+  if (is_waiting || page.IsOfThisSession(*result)) row.result = result;
+  return row;
+}
+
+const rig_pair_t* DashboardNode::ResultOf(const Rig& rig) const {
+  if (!rig_) return nullptr;
+  const auto result =
+      std::find_if(rig_->pairs.begin(), rig_->pairs.end(), [&](const rig_pair_t& each) {
+        return each.name == NameOf(rig);
+      });
+  return result == rig_->pairs.end() ? nullptr : &*result;
+}
+
+std::string DashboardNode::SensorThatIs(Flow flow, const Rig& rig, Clock::time_point now) const {
+  if (health_.FlowOf(rig.channels.lidar_points, now) == flow) return rig.lidar_name;
+  if (health_.FlowOf(rig.channels.camera_image, now) == flow) return rig.camera_name;
   return "";
+}
+
+// rig_calibrator knows nothing of the sensors' health. Where none can be sampled (before the first
+// frames, and after a recording's last) there is no better answer than its.
+std::string DashboardNode::NextPair(const std::vector<PairRow>& rows, Clock::time_point now) {
+  if (!rig_) return "";
+  std::vector<PairNeed> needs;
+  bool is_any_good = false;
+  bool is_weakest_good = false;
+  for (std::size_t i = 0; i < pages_.size(); ++i) {
+    const Rig& rig = pages_[i]->rig();
+    const rig_pair_t* result = ResultOf(rig);
+    if (result == nullptr) return rig_->weakest_pair;
+    PairNeed need = NeedOf(*result, rows[i].next_pose);
+    need.can_be_sampled = CanBeSampled(rig.channels, now);
+    is_any_good = is_any_good || need.can_be_sampled;
+    if (result->name == rig_->weakest_pair) is_weakest_good = need.can_be_sampled;
+    needs.push_back(need);
+  }
+  if (is_weakest_good || !is_any_good) {
+    next_pair_.reset();
+    return rig_->weakest_pair;
+  }
+  next_pair_ = WeakestPair(needs, next_pair_);
+  return NameOf(pages_[*next_pair_]->rig());
+}
+
+bool DashboardNode::CanBeSampled(const Channels& channels, Clock::time_point now) const {
+  const std::string streams[] = {
+      channels.lidar_points, channels.camera_image, channels.lidar_board, channels.camera_board};
+  return std::all_of(std::begin(streams), std::end(streams), [&](const std::string& channel) {
+    return health_.FlowOf(channel, now) == Flow::kFlows;
+  });
 }
 
 void DashboardNode::TakeCommands() {
@@ -178,16 +215,13 @@ void DashboardNode::TakeCommands() {
   if (num_refused > 0) SetCount("commands refused: too many at once", num_refused);
 }
 
-// A pair alone is not named by its page. Of several a number says which sample only with its pair.
+// A pair alone is not named by its page.
 void DashboardNode::SendCommand(const PageRequest& request) {
   command_t message{};
   message.utime = WallClockUs();
   message.command = request.command;
   message.sample_id = request.sample_id;
   message.pair = pages_.size() == 1 ? NameOf(pages_.front()->rig()) : request.pair;
-  if (message.command == "discard" && message.pair.empty()) {
-    return Count("commands refused: a sample of which pair?");
-  }
   bus_.Publish(pages_.front()->rig().channels.calib_command, message);
   for (const auto& page : pages_) {
     const bool is_meant = message.pair.empty() || message.pair == NameOf(page->rig());

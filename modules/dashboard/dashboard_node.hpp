@@ -32,12 +32,6 @@ class DashboardNode : public Module {
                 Bus* bus,
                 DashboardServer* server,
                 const std::filesystem::path& session_folder);
-  /// Of a pair alone.
-  DashboardNode(const Rig& rig,
-                Bus* bus,
-                DashboardServer* server,
-                const std::filesystem::path& session_folder,
-                const std::vector<std::string>& report_command);
 
   std::string Name() const override { return "dashboard"; }
   std::string State() const override;
@@ -63,8 +57,15 @@ class DashboardNode : public Module {
   /// Faults are to be seen at once: more often than heartbeats come.
   void LookAtSessionIfDue();
   void ShowPairs(Clock::time_point now);
-  /// Of this pair, which of its sensors sends nothing any more.
-  std::string SilentSensor(const Rig& rig, Clock::time_point now) const;
+  /// What was heard of this pair, as far as it is of its session.
+  PairRow RowOf(const PairPage& page, Clock::time_point now) const;
+  /// What rig_calibrator said of it; null: nothing.
+  const rig_pair_t* ResultOf(const Rig& rig) const;
+  /// The name of the first of the pair's sensors whose stream is so.
+  std::string SensorThatIs(Flow flow, const Rig& rig, Clock::time_point now) const;
+  /// The pair that the operator is sent to: the weakest, unless that cannot be sampled.
+  std::string NextPair(const std::vector<PairRow>& rows, Clock::time_point now);
+  bool CanBeSampled(const Channels& channels, Clock::time_point now) const;
 
   Bus& bus_;
   DashboardServer& server_;
@@ -73,6 +74,7 @@ class DashboardNode : public Module {
   std::vector<std::unique_ptr<PairPage>> pages_;
   std::vector<std::set<std::string>> names_of_others_;  ///< By page.
   std::optional<rig_extrinsics_t> rig_;
+  std::optional<std::size_t> next_pair_;  ///< While the weakest cannot be sampled.
   Clock::time_point next_step_;
   Clock::time_point next_look_;
 };

@@ -143,6 +143,8 @@ Json RowPart(const PairRow& row) {
                {"camera", row.camera},
                {"num_samples", row.num_samples},
                {"silent", row.silent},
+               {"unheard", row.unheard},
+               {"is_current", row.is_current},
                {"problem", row.result == nullptr ? "" : row.result->problem},
                {"grade", row.result == nullptr ? "" : row.result->verdict_grade},
                {"headline", row.result == nullptr ? "" : row.result->verdict_headline}};
@@ -178,12 +180,21 @@ std::string RigJson(const Rig& rig, bool is_of_several) {
   return Text(json);
 }
 
-std::string PairsJson(const std::vector<PairRow>& rows, const rig_extrinsics_t* rig) {
+// A rig has enough once its weakest pair has, whether or not that can be sampled now.
+std::string PairsJson(const std::vector<PairRow>& rows,
+                      const rig_extrinsics_t* rig,
+                      const std::string& next) {
   Json json = Of(Slot::kPairs);
   json["pairs"] = Json::array();
-  for (const PairRow& row : rows) json["pairs"].push_back(RowPart(row));
-  json["weakest"] =
-      rig == nullptr || rig->weakest_pair.empty() ? rows.front().name : rig->weakest_pair;
+  json["is_enough"] = false;
+  json["is_current"] = true;
+  for (const PairRow& row : rows) {
+    json["pairs"].push_back(RowPart(row));
+    if (!row.is_current) json["is_current"] = false;
+    const bool is_weakest = rig != nullptr && row.name == rig->weakest_pair;
+    if (is_weakest && row.next_pose != nullptr) json["is_enough"] = row.next_pose->is_enough != 0;
+  }
+  json["next"] = next;
   json["problem"] = rig == nullptr ? "" : rig->problem;
   if (rig != nullptr && !rig->verdict_grade.empty()) json["verdict"] = VerdictPart(*rig);
   return Text(json);

@@ -34,13 +34,18 @@ struct PairRow {
   std::string lidar;
   std::string camera;
   int num_samples = 0;
-  std::string silent;                      ///< Which of its sensors sends nothing; empty if none.
-  const rig_pair_t* result = nullptr;      ///< Null: nothing was heard of one.
+  std::string silent;   ///< Which of its sensors sends nothing any more; empty if none.
+  std::string unheard;  ///< Which has sent nothing yet; the same.
+  const rig_pair_t* result = nullptr;      ///< Null: none was heard of samples of this session.
   const next_pose_t* next_pose = nullptr;  ///< The same.
+  bool is_current = true;                  ///< The result is of the newest samples.
 };
-/// All pairs, what the rig that they are joined to is worth, and the weakest.
+/// All pairs, and what the rig that they are joined to is worth.
 /// @param rig  null: none was heard.
-std::string PairsJson(const std::vector<PairRow>& rows, const rig_extrinsics_t* rig);
+/// @param next  the pair that the operator is sent to; empty: not known.
+std::string PairsJson(const std::vector<PairRow>& rows,
+                      const rig_extrinsics_t* rig,
+                      const std::string& next);
 
 /// @param samples  of `message`, with the candidates that were chosen.
 /// @param averaged, assessment  of the same or earlier samples; null while there is none.

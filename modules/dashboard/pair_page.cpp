@@ -13,7 +13,6 @@
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/convert_result.hpp"
-#include "messaging/made_from.hpp"
 #include "result/result_file.hpp"
 
 namespace voqcal {
@@ -161,6 +160,12 @@ void PairPage::ShowGuidance() {
   if (!next_pose_) return;
   Show(Slot::kGuidance,
        GuidanceJson(*next_pose_, OrderFor(*next_pose_, board_camera_, rig_.camera)));
+}
+
+void PairPage::OnSamples(const samples_t& message) {
+  if (message.num_samples == 0) heard_samples_.clear();
+  heard_samples_.insert({message.revision, message.log_sha256});
+  Keep(message, &samples_);
 }
 
 void PairPage::OnEvent(const event_t& message) {

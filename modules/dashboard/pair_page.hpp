@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "dashboard/page_state.hpp"
@@ -18,6 +19,7 @@
 #include "dashboard/sensor_frames.hpp"
 #include "dashboard/server.hpp"
 #include "health/rig_health.hpp"
+#include "messaging/made_from.hpp"
 #include "rig/rig.hpp"
 #include "voqcal/image_t.hpp"
 #include "voqcal/pointcloud2_t.hpp"
@@ -57,7 +59,7 @@ class PairPage {
   void OnCameraBoard(const camera_board_t& message);
   void OnNextPose(const next_pose_t& message);
   void OnEvent(const event_t& message);
-  void OnSamples(const samples_t& message) { Keep(message, &samples_); }
+  void OnSamples(const samples_t& message);
   void OnSets(const voq_sets_t& message) { Keep(message, &sets_); }
   void OnAveraged(const extrinsic_averaged_t& message) { Keep(message, &averaged_); }
   void OnRefined(const extrinsic_refined_t& message) { Keep(message, &refined_); }
@@ -81,6 +83,16 @@ class PairPage {
 
   int num_samples() const { return samples_ ? samples_->num_samples : 0; }
   const std::optional<next_pose_t>& next_pose() const { return next_pose_; }
+  /// Whether a message was made from samples that were this session's since the last reset.
+  template <typename Message>
+  bool IsOfThisSession(const Message& message) const {
+    return heard_samples_.count({message.samples_revision, message.samples_sha256}) != 0;
+  }
+  /// Whether it was made from the newest.
+  template <typename Message>
+  bool IsCurrent(const Message& message) const {
+    return samples_ && IsMadeFrom(*samples_, message);
+  }
 
  private:
   template <typename Message>
@@ -143,6 +155,8 @@ class PairPage {
   std::optional<next_pose_t> next_pose_;
   std::optional<BoardPose> board_camera_;  ///< Where the camera sees it, in the newest image.
   std::optional<samples_t> samples_;
+  /// Revision and hash of all since there were none.
+  std::set<std::pair<std::int64_t, std::string>> heard_samples_;
   std::optional<voq_sets_t> sets_;
   std::optional<extrinsic_averaged_t> averaged_;
   std::optional<extrinsic_refined_t> refined_;

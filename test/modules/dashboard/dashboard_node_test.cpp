@@ -1,5 +1,7 @@
 #include "dashboard/dashboard_node.hpp"
 
+#include <chrono>
+#include <functional>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -33,6 +35,17 @@ ServerOptions TestOptions() {
   return options;
 }
 
+/// Does `step` until the condition holds. @return false if it does not within a minute.
+bool Await(const std::function<bool()>& condition, const std::function<void()>& step) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    step();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
 class DashboardNodeTest : public test::ChainTest {
  protected:
   test::SocketClient Page() const {
@@ -64,21 +77,19 @@ class DashboardNodeTest : public test::ChainTest {
   void ClickFinish() {
     test::SocketClient page = Page();
     page.Send(R"({"command": "finish"})");
-    while (commands_.messages.empty()) {
-      Step(&node_);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    ASSERT_TRUE(Await([this] { return !commands_.messages.empty(); }, [this] { Step(&node_); }));
     commands_.messages.clear();
   }
   /// Once there is no more to wait for.
   Json ReportWhenDone() {
     Json report;
-    do {
+    const auto look = [&] {
       node_.Republish();
       test::SocketClient page = Page();
       report = Next(&page, "report");
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    } while (report["state"] == "making");
+    };
+    look();
+    EXPECT_TRUE(Await([&] { return report["state"] != "making"; }, look));
     return report;
   }
   test::http::response<test::http::string_body> Get(const std::string& file) const {
@@ -93,7 +104,11 @@ class DashboardNodeTest : public test::ChainTest {
   AssessorNode assessor_{rig_, &bus_, folder_.path()};
   DashboardServer server_{TestOptions()};
   std::string report_script_ = folder_.path() / "make_report.sh";
-  DashboardNode node_{rig_, &bus_, &server_, folder_.path(), {"/bin/sh", report_script_}};
+  DashboardNode node_{{{rig_, folder_.path(), {"/bin/sh", report_script_}}},
+                      PlanOfPair(rig_.channels),
+                      &bus_,
+                      &server_,
+                      folder_.path()};
   test::Inbox<command_t> commands_{&bus_, rig_.channels.calib_command};
 };
 
@@ -181,10 +196,7 @@ TEST_F(DashboardNodeTest, ExportsNoFileOfOtherSamples) {
 TEST_F(DashboardNodeTest, SendsCommands) {
   test::SocketClient page = Page();
   page.Send(R"({"command": "discard", "sample_id": 5})");
-  while (commands_.messages.empty()) {
-    Step(&node_);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  ASSERT_TRUE(Await([this] { return !commands_.messages.empty(); }, [this] { Step(&node_); }));
   ASSERT_THAT(commands_.messages, SizeIs(1));
   EXPECT_EQ(commands_.messages[0].command, "discard");
   EXPECT_EQ(commands_.messages[0].sample_id, 5);
@@ -267,10 +279,8 @@ TEST_F(DashboardNodeTest, WorksWhileMessagesNeverCease) {
   SendSamples(test::NoisySamples(3), 3);
   test::SocketClient page = Page();
   page.Send(R"({"command": "capture"})");
-  while (commands_.messages.empty()) {
-    test::Send(&bus_, rig_.channels.lidar_points, pointcloud2_t{});
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  ASSERT_TRUE(Await([this] { return !commands_.messages.empty(); },
+                    [this] { test::Send(&bus_, rig_.channels.lidar_points, pointcloud2_t{}); }));
   EXPECT_EQ(Next(&page, "samples")["samples"].size(), 3U);
 }
 
@@ -381,16 +391,67 @@ class DashboardOfARigTest : public ::testing::Test {
   }
   SessionPlan Plan() const {
     SessionPlan plan;
+    const auto add = [&plan](const std::string& channel, const std::string& sender) {
+      Stream stream;
+      stream.channel = channel;
+      stream.sender = sender;
+      stream.name = sender;
+      plan.streams.push_back(stream);
+    };
+    add(pairs_[0].rig.channels.lidar_points, "lidar_driver_roof");
+    add(pairs_[0].rig.channels.lidar_board, "lidar_board_detector_roof");
     for (const ShownPair& pair : pairs_) {
       const std::string& camera = pair.rig.camera_name;
-      Stream stream;
-      stream.channel = pair.rig.channels.camera_image;
-      stream.sender = "camera_driver_" + camera;
-      stream.name = "camera " + camera;
-      plan.streams.push_back(stream);
+      add(pair.rig.channels.camera_image, "camera_driver_" + camera);
+      add(pair.rig.channels.camera_board, "camera_board_detector_" + camera);
       plan.modules.push_back("sample_collector_roof_" + camera);
     }
     return plan;
+  }
+  /// Some module has heard all four streams of this pair lately.
+  void LetFlow(const Channels& channels) {
+    module_status_t status{};
+    status.module = "recorder";
+    for (const std::string& channel : {channels.lidar_points,
+                                       channels.lidar_board,
+                                       channels.camera_image,
+                                       channels.camera_board}) {
+      channel_status_t& heard = status.channels.emplace_back();
+      heard.channel = channel;
+      heard.num_received = 10;
+      heard.rate_hz = 10;
+    }
+    status.num_channels = 4;
+    test::Send(&bus_, "MODULE_STATUS", status);
+  }
+  void SendSamples(const std::string& camera, int num_samples, std::int64_t revision) {
+    test::Send(&bus_,
+               "CALIB_SAMPLES_roof_" + camera,
+               ToMessage(test::NoisySamples(num_samples), revision, false, "its log's hash"));
+  }
+  /// Of both pairs, made from samples of this revision.
+  static rig_extrinsics_t Results(const std::string& weakest, std::int64_t revision) {
+    rig_extrinsics_t result{};
+    result.weakest_pair = weakest;
+    result.verdict_grade = "look";
+    result.verdict_headline = "Usable";
+    for (const char* const camera : {"front", "rear"}) {
+      rig_pair_t& pair = result.pairs.emplace_back();
+      pair.name = std::string("roof_") + camera;
+      pair.from = "roof";
+      pair.to = camera;
+      pair.samples_revision = revision;
+      pair.samples_sha256 = "its log's hash";
+      pair.verdict_grade = "look";
+    }
+    result.num_pairs = 2;
+    return result;
+  }
+  /// As a page that is opened now is told it.
+  Json Table() {
+    node_.Republish();
+    test::SocketClient page = Page();
+    return Next(&page, "pairs");
   }
   test::SocketClient Page() const {
     const std::string host = "127.0.0.1:" + std::to_string(server_.port());
@@ -407,12 +468,13 @@ class DashboardOfARigTest : public ::testing::Test {
     test::SocketClient page = Page();
     page.Send(request);
     commands_.messages.clear();
-    while (commands_.messages.empty()) {
-      node_.Step();
-      test::HandleAll(&bus_);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return commands_.messages.back();
+    const bool has_come = Await([this] { return !commands_.messages.empty(); },
+                                [this] {
+                                  node_.Step();
+                                  test::HandleAll(&bus_);
+                                });
+    EXPECT_TRUE(has_come) << request;
+    return has_come ? commands_.messages.back() : command_t{};
   }
 
   test::TemporaryFolder folder_;
@@ -424,22 +486,20 @@ class DashboardOfARigTest : public ::testing::Test {
 };
 
 TEST_F(DashboardOfARigTest, ShowsThePairThatIsWatchedAndTheTableOfAll) {
-  test::Send(&bus_,
-             "CALIB_SAMPLES_roof_rear",
-             ToMessage(test::NoisySamples(3), 3, false, "its log's hash"));
+  SendSamples("rear", 3, 3);
   next_pose_t next_pose{};
   next_pose.worst_error = 12.5;
   next_pose.unit = "mm";
   next_pose.is_enough = 1;
+  next_pose.samples_revision = 3;
+  next_pose.samples_sha256 = "its log's hash";
   test::Send(&bus_, "NEXT_POSE_roof_rear", next_pose);
-  rig_extrinsics_t result{};
-  result.weakest_pair = "roof_rear";
+  SendSamples("front", 8, 8);
+  rig_extrinsics_t result = Results("roof_rear", 8);
   result.problem = "no pair joins these parts of the rig: roof, front | rear";
-  result.pairs.resize(2);
-  result.num_pairs = 2;
-  result.pairs[0].name = "roof_front";
-  result.pairs[0].verdict_grade = "look";
+  result.pairs[1] = {};
   result.pairs[1].name = "roof_rear";
+  result.pairs[1].samples_revision = -1;
   result.pairs[1].problem = "not calibrated yet";
   test::Send(&bus_, "RIG_EXTRINSICS", result);
   node_.Republish();
@@ -453,7 +513,8 @@ TEST_F(DashboardOfARigTest, ShowsThePairThatIsWatchedAndTheTableOfAll) {
   EXPECT_EQ(rig["name"], "truck");
   EXPECT_EQ(rig["pair"]["camera"], "rear");
   const Json pairs = Next(&page, "pairs");
-  EXPECT_EQ(pairs["weakest"], "roof_rear");
+  EXPECT_EQ(pairs["next"], "roof_rear");
+  EXPECT_EQ(pairs["is_enough"], true);
   EXPECT_EQ(pairs["problem"], result.problem);
   EXPECT_EQ(pairs["pairs"][0]["grade"], "look");
   EXPECT_FALSE(pairs["pairs"][0].contains("worst_error"));
@@ -463,17 +524,62 @@ TEST_F(DashboardOfARigTest, ShowsThePairThatIsWatchedAndTheTableOfAll) {
   EXPECT_EQ(Next(&page, "samples")["samples"].size(), 3U);
 }
 
+TEST_F(DashboardOfARigTest, CallsNothingNextOrEnoughBeforeItHears) {
+  EXPECT_EQ(Table()["next"], "");
+  EXPECT_EQ(Table()["is_enough"], false);
+}
+
+// A camera that never starts would else hold the operator for ever.
+TEST_F(DashboardOfARigTest, SendsToNoPairWhoseSensorSendsNothing) {
+  SendSamples("rear", 8, 8);
+  rig_extrinsics_t result = Results("roof_front", 8);
+  result.pairs[0].verdict_grade.clear();
+  result.pairs[0].problem = "the two never saw the board rest at one time";
+  test::Send(&bus_, "RIG_EXTRINSICS", result);
+  next_pose_t enough{};
+  enough.is_enough = 1;
+  enough.samples_revision = 8;
+  enough.samples_sha256 = "its log's hash";
+  test::Send(&bus_, "NEXT_POSE_roof_rear", enough);
+  EXPECT_EQ(Table()["next"], "roof_front");  // none can be sampled: all are as good
+  LetFlow(pairs_[1].rig.channels);
+  const Json table = Table();
+  EXPECT_EQ(table["next"], "roof_rear");
+  EXPECT_EQ(table["pairs"][0]["unheard"], "front");
+  EXPECT_EQ(table["pairs"][1]["unheard"], "");
+  EXPECT_EQ(table["is_enough"], false);  // the rig lacks the other all the same
+  LetFlow(pairs_[0].rig.channels);
+  EXPECT_EQ(Table()["next"], "roof_front");
+}
+
+TEST_F(DashboardOfARigTest, AResultIsOfTheSamplesThatAreThere) {
+  SendSamples("front", 8, 8);
+  SendSamples("rear", 8, 8);
+  test::Send(&bus_, "RIG_EXTRINSICS", Results("roof_front", 8));
+  EXPECT_EQ(Table()["pairs"][0]["grade"], "look");
+  EXPECT_EQ(Table()["is_current"], true);
+  SendSamples("front", 9, 9);  // the older one stays in sight while it is renewed
+  const Json renewed = Table();
+  EXPECT_EQ(renewed["pairs"][0]["grade"], "look");
+  EXPECT_EQ(renewed["pairs"][0]["is_current"], false);
+  EXPECT_EQ(renewed["pairs"][1]["is_current"], true);
+  EXPECT_EQ(renewed["is_current"], false);
+  SendSamples("front", 0, 10);  // a reset
+  SendSamples("front", 1, 11);
+  const Json reset = Table();
+  EXPECT_EQ(reset["pairs"][0]["num_samples"], 1);
+  EXPECT_EQ(reset["pairs"][0]["grade"], "");
+  EXPECT_EQ(reset["pairs"][1]["grade"], "look");
+  EXPECT_EQ(reset["is_current"], false);
+}
+
 TEST_F(DashboardOfARigTest, CommandsOnePairOrAll) {
   EXPECT_EQ(Clicked(R"({"command": "capture", "pair": "roof_rear"})").pair, "roof_rear");
   EXPECT_EQ(Clicked(R"({"command": "finish"})").pair, "");
-  // A number names a sample of one pair only.
-  Clicked(R"({"command": "discard", "sample_id": 1, "pair": "roof_rear"})");
-  {
-    test::SocketClient page = Page();
-    page.Send(R"({"command": "discard", "sample_id": 1})");
-    while (node_.counters().count("commands refused: a sample of which pair?") == 0) node_.Step();
-  }
-  EXPECT_THAT(commands_.messages, SizeIs(1));
+  const command_t discard =
+      Clicked(R"({"command": "discard", "sample_id": 1, "pair": "roof_rear"})");
+  EXPECT_EQ(discard.pair, "roof_rear");
+  EXPECT_EQ(discard.sample_id, 1);
 }
 
 TEST_F(DashboardOfARigTest, AFaultOfAnotherPairIsMarkedSo) {

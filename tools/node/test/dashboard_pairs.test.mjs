@@ -9,12 +9,12 @@ const source = fileURLToPath(new URL("../../../modules/dashboard/page/src/pairs.
 const { text } = buildSync({ entryPoints: [source], bundle: true, format: "esm", write: false }).outputFiles[0];
 const { PairChoice, stateOf } = await import(`data:text/javascript,${encodeURIComponent(text)}`);
 
-const row = (name, more = {}) => ({ name, silent: "", problem: "", grade: "", headline: "", num_samples: 0, ...more });
-const told = (weakest) => ({ kind: "pairs", pairs: [row("roof_front"), row("roof_rear")], weakest, problem: "" });
+const row = (name, more = {}) => ({ name, silent: "", unheard: "", is_current: true, problem: "", grade: "", headline: "", num_samples: 0, ...more });
+const told = (next) => ({ kind: "pairs", pairs: [row("roof_front"), row("roof_rear")], next, problem: "" });
 
-const wanted = (choice, weakest, shown = null, isBusy = false, nowMs = 0) => choice.wanted(told(weakest), shown, isBusy, nowMs);
+const wanted = (choice, next, shown = null, isBusy = false, nowMs = 0) => choice.wanted(told(next), shown, isBusy, nowMs);
 
-test("who has chosen nothing sees the weakest, whichever it is by now", () => {
+test("who has chosen nothing sees the next, whichever it is by now", () => {
   const choice = new PairChoice(null);
   assert.equal(wanted(choice, "roof_rear"), "roof_rear");
   assert.equal(wanted(choice, "roof_front", "roof_rear", false, 5000), "roof_front");
@@ -36,6 +36,11 @@ test("the page does not turn while a question is open or a command waits for its
   assert.equal(wanted(choice, "roof_rear", "roof_front", false, 1e6), "roof_rear");
 });
 
+test("while it is not known which is next, the page stays where it is", () => {
+  assert.equal(wanted(new PairChoice(null), "", "roof_rear"), "roof_rear");
+  assert.equal(wanted(new PairChoice(null), ""), "roof_front");
+});
+
 test("an own choice stays, until it is given up", () => {
   const choice = new PairChoice(null);
   choice.choose("roof_front");
@@ -46,7 +51,7 @@ test("an own choice stays, until it is given up", () => {
   assert.equal(wanted(choice, "roof_rear", "roof_front"), "roof_rear");
 });
 
-test("of an address that names no pair of this rig the weakest is shown", () => {
+test("of an address that names no pair of this rig the next is shown", () => {
   assert.equal(wanted(new PairChoice("bumper_left"), "roof_rear"), "roof_rear");
 });
 
@@ -54,6 +59,9 @@ test("a silent sensor is told before a problem, that before a verdict", () => {
   const said = { silent: "rear", problem: "not calibrated yet", headline: "Good." };
   assert.equal(stateOf(row("roof_rear", said)), "rear is silent");
   assert.equal(stateOf(row("roof_rear", { ...said, silent: "" })), "not calibrated yet");
+  assert.equal(stateOf(row("roof_rear", { ...said, silent: "", unheard: "rear" })), "rear has sent nothing yet");
   assert.equal(stateOf(row("roof_rear", { headline: "Good." })), "Good.");
-  assert.equal(stateOf(row("roof_rear")), "not heard yet");
+  assert.equal(stateOf(row("roof_rear", { headline: "Good.", is_current: false })), "Good. (being renewed)");
+  assert.equal(stateOf(row("roof_rear")), "no samples yet");
+  assert.equal(stateOf(row("roof_rear", { num_samples: 1 })), "being calibrated");
 });

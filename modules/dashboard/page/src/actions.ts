@@ -139,6 +139,11 @@ export class Actions {
     return isTaken;
   }
 
+  takeRefusal(reason: string): void {
+    this.stopWaiting();
+    this.say(`Refused: ${reason}`);
+  }
+
   private enable(): void {
     const set = (id: string, isOn: boolean) => (byId<HTMLButtonElement>(id).disabled = !isOn);
     set("capture", this.isLive && this.mayCapture);

@@ -90,13 +90,12 @@ function showFlow(sensor: "camera" | "lidar", flows: HealthView["flows"]): void 
   setText(`${sensor}-flow`, isOver ? `${flow}; before: ` : "");
 }
 
-/** A rig has enough once its weakest pair has. */
+/** Of several pairs all must have. */
 function showEnough(): void {
-  const weakest = pairs?.pairs.find(({ name }) => name === pairs!.weakest);
-  actions.setEnough((shownOrder?.is_enough ?? false) && weakest?.is_enough !== false);
+  actions.setEnough((shownOrder?.is_enough ?? false) && (pairs?.is_enough ?? true));
 }
 
-/** Null: the weakest, whichever it is. */
+/** Null: the next, whichever it is. */
 function choosePair(name: string | null): void {
   choice.choose(name);
   history.replaceState(null, "", name === null ? location.pathname : `#${encodeURIComponent(name)}`);
@@ -124,9 +123,9 @@ function followPair(): void {
 
 function showPairName(): void {
   if (!pair) return;
-  const isWeakest = pairs?.weakest === pair.name;
+  const isNext = pairs?.next === pair.name;
   byId("order-of").hidden = false;
-  setText("order-of", isWeakest ? `Next: ${pairText(pair)}` : pairText(pair));
+  setText("order-of", isNext ? `Next: ${pairText(pair)}` : pairText(pair));
   setText("result-of", pairText(pair));
   setText("image-title", `Camera ${pair.camera}`);
   setText("scene-title", `Lidar ${pair.lidar}`);
@@ -219,7 +218,7 @@ function take(message: Message): void {
       showHealth();
       break;
     case "refused":
-      actions.say(`Refused: ${message.reason}`);
+      actions.takeRefusal(message.reason);
       break;
   }
 }

@@ -11,7 +11,7 @@ export function pairText({ lidar, camera }: PairName): string {
 /** A pair that the page turned to, or that a sample was taken of, is not taken away at once: time to see it and to discard. */
 const HOLD_MS = 5000;
 
-/** The operator's own choice, which stays (over a reload too: it is the address's fragment); without one the weakest. */
+/** The operator's own choice, which stays (over a reload too: it is the address's fragment); without one that which is next. */
 export class PairChoice {
   private heldUntilMs = 0;
 
@@ -35,37 +35,41 @@ export class PairChoice {
    * @param shown   which the page shows by now; null: none yet.
    * @param isBusy  something was asked of that one which is not answered yet.
    */
-  wanted({ pairs, weakest }: Pairs, shown: string | null, isBusy: boolean, nowMs: number): string {
+  wanted({ pairs, next }: Pairs, shown: string | null, isBusy: boolean, nowMs: number): string {
     const has = (name: string | null) => pairs.some((row) => row.name === name);
     if (has(this.own)) return this.own!;
-    if (has(shown) && (shown === weakest || isBusy || nowMs < this.heldUntilMs)) return shown!;
-    this.hold(nowMs);
-    return weakest;
+    if (has(shown) && (!has(next) || shown === next || isBusy || nowMs < this.heldUntilMs)) return shown!;
+    if (has(shown)) this.hold(nowMs);
+    return has(next) ? next : pairs[0]!.name;
   }
 }
 
 /** What there is to say of a pair, the gravest first. */
 export function stateOf(row: PairRow): string {
   if (row.silent) return `${row.silent} is silent`;
-  return row.problem || row.headline || "not heard yet";
+  if (row.unheard) return `${row.unheard} has sent nothing yet`;
+  const said = row.problem || row.headline;
+  if (!said) return row.num_samples > 0 ? "being calibrated" : "no samples yet";
+  return row.is_current ? said : `${said} (being renewed)`;
 }
 
-export function showPairs({ pairs, weakest, problem, verdict }: Pairs, shown: string, choose: (name: string) => void): void {
+export function showPairs({ pairs, next, problem, verdict, is_current }: Pairs, shown: string, choose: (name: string) => void): void {
   byId("pairs-panel").hidden = false;
   const list = byId("pairs");
   for (const row of pairs) {
     const button = list.querySelector<HTMLElement>(`[data-pair="${row.name}"]`) ?? addPair(list, row, choose);
     button.setAttribute("aria-pressed", `${row.name === shown}`);
     button.dataset.grade = row.silent ? "bad" : row.grade || "none";
-    button.dataset.isWeakest = `${row.name === weakest}`;
+    button.dataset.isNext = `${row.name === next}`;
     const [, mark, figures, state] = button.children as unknown as HTMLElement[];
-    put(mark!, row.name === weakest ? "next" : "");
+    put(mark!, row.name === next ? "next" : "");
     put(figures!, `${row.num_samples} ${row.num_samples === 1 ? "sample" : "samples"}${errorText(row)}`);
     put(state!, stateOf(row));
   }
   byId("rig-result").hidden = false;
   byId("rig-verdict").dataset.grade = verdict?.grade ?? "none";
-  setText("rig-verdict", `Rig: ${verdict?.headline ?? "no result yet"}`);
+  const isOlder = verdict !== undefined && !is_current;
+  setText("rig-verdict", `Rig: ${verdict?.headline ?? "no result yet"}${isOlder ? " (of earlier samples)" : ""}`);
   setText("rig-problem", problem);
   const checks = verdict?.checks ?? [];
   gradedList("rig-bad", checks.filter(({ grade }) => grade === "bad"));

@@ -26,8 +26,11 @@ export interface Rig {
 
 export interface PairRow extends PairName {
   num_samples: number;
-  /** Which of its sensors sends nothing any more. */
+  /** Which of its sensors sends nothing any more; which has sent nothing yet. */
   silent: string;
+  unheard: string;
+  /** What follows is of the newest samples. */
+  is_current: boolean;
   problem: string;
   grade: Grade | "";
   headline: string;
@@ -40,7 +43,12 @@ export interface PairRow extends PairName {
 export interface Pairs {
   kind: "pairs";
   pairs: PairRow[];
-  weakest: string;
+  /** Where samples help most, of what can be sampled; empty: not known. */
+  next: string;
+  /** The rig needs no more samples. */
+  is_enough: boolean;
+  /** All results are of the newest samples. */
+  is_current: boolean;
   /** Why the pairs do not hold the rig together. */
   problem: string;
   /** Of the rig that they are joined to. */

@@ -42,6 +42,7 @@ export class ImageView {
     this.bitmap = this.frame = this.cloud = this.guidance = this.drawnCloud = this.pixels = null;
     ++this.cleared;
     this.context.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    delete this.canvas.dataset.utime;
   }
 
   // These show with the next image.

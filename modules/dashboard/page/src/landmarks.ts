@@ -10,12 +10,11 @@ const MARKS_M = [1, 2, 5, 10];
 const SIGHT_M = 1;
 
 /** Squares of one metre on the ground, and how far it is along the lidar's x axis. */
-export function ground(height_m: number): THREE.Group {
+export function ground(): THREE.Group {
   const group = new THREE.Group();
   const material = new THREE.LineBasicMaterial({ color: themeColour("soft"), transparent: true, opacity: 0.4 });
   group.add(new THREE.LineSegments(grid(), material));
   group.add(...MARKS_M.map((mark) => label(`${mark} m`, new THREE.Vector3(mark, 0, 0))));
-  group.position.z = height_m;
   return group;
 }
 

@@ -26,7 +26,7 @@ export class SceneView {
   private readonly samples = new THREE.Group();
   private readonly ghost = new THREE.Group();
   private readonly sight = new THREE.Group();
-  private hasGround = false;
+  private readonly ground = ground();
   private border: Point3[] = [];
   private pixelColour: PixelColour = () => null;
   private isAsked = false;
@@ -44,7 +44,8 @@ export class SceneView {
       "The lidar's sweep with the board, the samples and the next pose. Drag to turn, pinch to zoom, arrow keys to move.",
     );
     this.points.frustumCulled = false;
-    this.scene.add(this.points, this.board, this.samples, this.ghost, this.sight, new THREE.AxesHelper(0.5));
+    this.scene.add(this.points, this.board, this.samples, this.ghost, this.sight, this.ground, new THREE.AxesHelper(0.5));
+    this.ground.visible = false;
     this.camera.up.copy(UP);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.listenToKeyEvents(this.renderer.domElement);
@@ -102,13 +103,16 @@ export class SceneView {
     this.points.geometry.dispose();
     this.points.geometry = new THREE.BufferGeometry();
     for (const group of [this.board, this.samples, this.ghost, this.sight]) this.replace(group, []);
+    this.ground.visible = false;
+    delete this.holder.dataset.utime;
   }
 
+  /** Of the first sweep: it does not move. */
   private showGround(positions_m: Float32Array): void {
-    const height_m = this.hasGround ? null : groundHeight(positions_m);
+    const height_m = this.ground.visible ? null : groundHeight(positions_m);
     if (height_m === null) return;
-    this.hasGround = true;
-    this.scene.add(ground(height_m));
+    this.ground.position.z = height_m;
+    this.ground.visible = true;
   }
 
   showBoard(board: LidarBoard): void {

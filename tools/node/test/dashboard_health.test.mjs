@@ -46,6 +46,14 @@ test("a fault of another pair of the rig is told, and this one goes on", () => {
   assert.equal(own.instead, "Wait with the board. The disk is full.");
 });
 
+test("a fault of another pair is no reason to wait for a sensor of this one", () => {
+  const silence = { ...fault("camera rear", "The camera rear has sent nothing for 2 s"), is_of_others: true };
+  const view = healthView("live", told([silence], { camera: "nothing yet" }), 400);
+  assert.equal(view.headline, "Wrong: camera rear");
+  assert.ok(!view.mayOrder);
+  assert.equal(view.instead, "Waiting for the camera.");
+});
+
 test("clocks apart, two sessions and a full disk halt the orders although all streams flow", () => {
   for (const of of ["sample_collector", "network", "disk"]) {
     const view = healthView("live", told([fault(of, "It is so")]), 400);

@@ -7,7 +7,7 @@ import { buildSync } from "esbuild";
 
 const source = fileURLToPath(new URL("../../../modules/dashboard/page/src/pairs.ts", import.meta.url));
 const { text } = buildSync({ entryPoints: [source], bundle: true, format: "esm", write: false }).outputFiles[0];
-const { PairChoice, stateOf } = await import(`data:text/javascript,${encodeURIComponent(text)}`);
+const { PairChoice, pairOfHash, stateOf } = await import(`data:text/javascript,${encodeURIComponent(text)}`);
 
 const row = (name, more = {}) => ({ name, silent: "", unheard: "", is_current: true, problem: "", grade: "", headline: "", num_samples: 0, ...more });
 const told = (next) => ({ kind: "pairs", pairs: [row("roof_front"), row("roof_rear")], next, problem: "" });
@@ -52,7 +52,16 @@ test("an own choice stays, until it is given up", () => {
 });
 
 test("of an address that names no pair of this rig the next is shown", () => {
-  assert.equal(wanted(new PairChoice("bumper_left"), "roof_rear"), "roof_rear");
+  const choice = new PairChoice("bumper_left");
+  assert.equal(wanted(choice, "roof_rear"), "roof_rear");
+  assert.ok(!choice.isOwn());
+});
+
+test("a fragment names a pair, or is no text at all", () => {
+  assert.equal(pairOfHash("#roof_rear"), "roof_rear");
+  assert.equal(pairOfHash("#d%C3%A9j%C3%A0_rear"), "déjà_rear");
+  assert.equal(pairOfHash(""), null);
+  assert.equal(pairOfHash("#100%"), null);
 });
 
 test("a silent sensor is told before a problem, that before a verdict", () => {

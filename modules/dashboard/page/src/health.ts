@@ -51,7 +51,7 @@ export function healthView(connection: ConnectionState, modules: Modules | null,
       flows,
     };
   }
-  if (grave.length > 0) return halted("wrong", headlineOf(grave), modules.faults, flows);
+  if (grave.length > 0) return halted("wrong", headlineOf(grave), modules.faults, flows, waitingFor(flows));
   return halted("waiting", waitingFor(flows), modules.faults, flows);
 }
 
@@ -63,15 +63,16 @@ function headlineOf(grave: Fault[]): string {
   return grave.length === 1 ? `Wrong: ${grave[0]!.of}` : `${grave.length} things are wrong`;
 }
 
+/** @param waiting  said where no fault is the reason to wait. */
 function halted(
   state: HealthView["state"],
   headline: string,
   faults: Fault[],
   flows: Record<StreamName, Flow>,
+  waiting = headline,
 ): HealthView {
-  const graves = faults.filter((fault) => fault.is_grave);
-  const grave = graves.find((fault) => !isBesideTheBoard(fault)) ?? graves[0];
-  const instead = grave ? `Wait with the board. ${grave.what}.` : `${headline}.`;
+  const reason = faults.find((fault) => fault.is_grave && !isBesideTheBoard(fault));
+  const instead = reason ? `Wait with the board. ${reason.what}.` : `${waiting}.`;
   return { state, headline, faults, mayOrder: false, instead, flows };
 }
 

@@ -8,7 +8,7 @@ import { Coverage } from "./coverage.ts";
 import { byId, setText } from "./dom.ts";
 import { healthView, type HealthView } from "./health.ts";
 import { ImageView } from "./image_view.ts";
-import { PairChoice, pairText, scrollToPair, showPairs } from "./pairs.ts";
+import { PairChoice, pairOfHash, pairText, scrollToPair, showPairs } from "./pairs.ts";
 import { showEvents, showFaults, showFirstGuidance, showGuidance, showModules, showNoGuidance, showReport, showResult, showSamples } from "./panels.ts";
 import type { CameraBoard, Guidance, ImageFrame, LidarBoard, Message, Modules, PairName, Pairs } from "./protocol.ts";
 import { SceneView } from "./scene_view.ts";
@@ -35,7 +35,7 @@ let imageAt = 0;
 let pairs: Pairs | null = null;
 let pair: PairName | null = null;
 let asked: string | null = null;
-const choice = new PairChoice(decodeURIComponent(location.hash.slice(1)) || null);
+const choice = new PairChoice(pairOfHash(location.hash));
 
 /** Null where the browser has no WebGL: all else works without. */
 function makeSceneView(): SceneView | null {
@@ -232,5 +232,6 @@ scene?.colourBy((cloud, point) => (isColoured.checked ? image.colourOf(cloud, po
 byId("follows").addEventListener("change", (event) => {
   choosePair((event.target as HTMLInputElement).checked ? null : (pair?.name ?? null));
 });
+addEventListener("hashchange", () => choosePair(pairOfHash(location.hash)));
 byId("look-along").addEventListener("click", () => scene?.lookAlong());
 connection.open();

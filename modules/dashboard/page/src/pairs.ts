@@ -8,6 +8,15 @@ export function pairText({ lidar, camera }: PairName): string {
   return `${lidar} → ${camera}`;
 }
 
+/** The pair that an address's fragment names; null: none. */
+export function pairOfHash(hash: string): string | null {
+  try {
+    return decodeURIComponent(hash.slice(1)) || null;
+  } catch {
+    return null; // no text: typed or cut by somebody
+  }
+}
+
 /** A pair that the page turned to, or that a sample was taken of, is not taken away at once: time to see it and to discard. */
 const HOLD_MS = 5000;
 
@@ -38,6 +47,7 @@ export class PairChoice {
   wanted({ pairs, next }: Pairs, shown: string | null, isBusy: boolean, nowMs: number): string {
     const has = (name: string | null) => pairs.some((row) => row.name === name);
     if (has(this.own)) return this.own!;
+    this.own = null; // of another rig
     if (has(shown) && (!has(next) || shown === next || isBusy || nowMs < this.heldUntilMs)) return shown!;
     if (has(shown)) this.hold(nowMs);
     return has(next) ? next : pairs[0]!.name;

@@ -1,4 +1,4 @@
-// dashboard_rig.mjs SESSION [FOLDER]: a live session of a rig of several sensors in a browser: the pairs, the weakest
+// dashboard_rig.mjs SESSION [FOLDER]: a live session of a rig of several sensors in a browser: the pairs, the next
 // and the operator's own choice, a camera that falls silent, the end. Ends with 1 and a line for each thing that is
 // wrong. With FOLDER it leaves screenshots there. 77: no Chromium here.
 import { execFileSync } from "node:child_process";
@@ -47,12 +47,12 @@ async function seeAllPairs() {
   demand((await text("rig")) === "simulated_several", `the rig is called ${await text("rig")}`);
 }
 
-/** Who chose nothing sees the weakest, and what to do for it. */
-async function followTheWeakest() {
+/** Who chose nothing sees the weakest that can be sampled, and what to do for it. */
+async function followTheNext() {
   await until(() => document.querySelectorAll('#pairs [data-grade]:not([data-grade="none"])').length >= 3);
   await until(() => {
     const pair = document.querySelector('#pairs [aria-pressed="true"]');
-    return pair.dataset.isWeakest === "true" && document.getElementById("order-of").textContent === `Next: ${pair.children[0].textContent}`;
+    return pair.dataset.isNext === "true" && document.getElementById("order-of").textContent === `Next: ${pair.children[0].textContent}`;
   });
   await until(() => document.getElementById("advice").textContent !== "");
   say(`${await text("order-of")}: ${await text("advice")}`);
@@ -61,7 +61,7 @@ async function followTheWeakest() {
 /** It has samples of its own; what is clicked is of it. */
 async function choose(name) {
   await button(name).click();
-  await until((name) => document.querySelector('#pairs [aria-pressed="true"]').dataset.pair === name, name);
+  await seeAnew(name, {});
   await until(() => document.getElementById("stale").hidden);
   demand((await text("order-of")).endsWith(titleOf(name)), `${name} is chosen, the order is of ${await text("order-of")}`);
   demand((await text("result-of")) === titleOf(name), `${name} is chosen, the result is of ${await text("result-of")}`);
@@ -75,15 +75,31 @@ async function keepTheChoice(name) {
   await until((name) => document.querySelector(`[data-pair="${name}"] .figures`).textContent.startsWith(document.getElementById("sample-count").textContent + " "), name);
 }
 
+/** What is shown is of this pair, was drawn after `before`, and its samples are as many as the table says. */
+async function seeAnew(name, before) {
+  await until(
+    ({ name, title, before }) => {
+      const { dataset } = document.querySelector('#pairs [aria-pressed="true"]');
+      const [image, scene] = ["image", "scene"].map((id) => document.getElementById(id).dataset.utime);
+      const figures = document.querySelector(`[data-pair="${name}"] .figures`).textContent;
+      const isNew = image && scene && image !== before.image && scene !== before.scene;
+      const ofSamples = `${document.getElementById("sample-count").textContent} sample`;
+      return dataset.pair === name && document.getElementById("result-of").textContent === title && isNew && figures.startsWith(ofSamples);
+    },
+    { name, title: titleOf(name), before },
+  );
+}
+
 /** The server that is started again begins with its first pair. */
 async function surviveTheServer(name) {
   isServerDown = true;
   supervisorctl("signal", "KILL", "dashboard");
   await until(() => document.getElementById("connection").dataset.state !== "live");
+  const utime = (id) => page.locator(`#${id}`).getAttribute("data-utime");
+  const before = { image: await utime("image"), scene: await utime("scene") };
   await until(() => document.getElementById("connection").dataset.state === "live");
   isServerDown = false;
-  await until((name) => document.querySelector('#pairs [aria-pressed="true"]').dataset.pair === name, name);
-  await until((title) => document.getElementById("result-of").textContent === title, titleOf(name));
+  await seeAnew(name, before);
 }
 
 async function discardOne(name) {
@@ -102,6 +118,10 @@ async function loseACamera() {
   await until(() => document.querySelector('[data-pair="roof_rear"] .state').textContent === "rear is silent");
   demand(!/^Wait with the board/.test(await text("advice")), `of roof_front: ${await text("advice")}`);
   await lookAtAll("silent");
+  await page.locator("#follows").check();
+  await followTheNext();
+  demand(!(await shown()).endsWith("_rear"), `who follows is sent to ${await shown()}, whose camera is silent`);
+  demand(!/^Wait with the board/.test(await text("advice")), `who follows is told: ${await text("advice")}`);
   await button("roof_rear").click();
   await until(() => /^Wait with the board\. The camera rear/.test(document.getElementById("advice").textContent));
   supervisorctl("signal", "CONT", "camera_driver_rear");
@@ -140,8 +160,8 @@ await page.setViewportSize(SIZES.phone);
 await page.goto(readFileSync(join(session, "dashboard_url.txt"), "utf8").trim());
 await seeAllPairs();
 await look("phone", "begin");
-await followTheWeakest();
-await lookAtAll("weakest");
+await followTheNext();
+await lookAtAll("next");
 await choose("bumper_left");
 await surviveTheServer("bumper_left");
 await choose("roof_front");
@@ -149,7 +169,7 @@ await keepTheChoice("roof_front");
 await discardOne("roof_front");
 await loseACamera();
 await page.locator("#follows").check();
-await followTheWeakest();
+await followTheNext();
 await finish();
 await lookAtAll("finished");
 // The sensors are laid down first: what they still see would be a sample of the new session.

@@ -102,7 +102,6 @@ std::vector<ShownPair> ShownPairs(const std::vector<Rig>& pairs,
   std::vector<ShownPair> shown;
   for (const Rig& rig : pairs) {
     const std::filesystem::path folder = session / PairName(rig.lidar_name, rig.camera_name);
-    std::filesystem::create_directories(folder);
     const std::string pair_of_own = own.string() + "#" + rig.lidar_name + "," + rig.camera_name;
     shown.push_back(
         {rig, folder, ReportCommand(folder, has_own ? pair_of_own : rig.path.string())});
@@ -130,15 +129,14 @@ void Run(const ProcessArgs& args) {
     options.pairs.push_back(PairName(each.lidar_name, each.camera_name));
   }
 
+  const std::vector<ShownPair> shown = ShownPairs(pairs, session, args.rig_path);
+  for (const ShownPair& pair : shown) std::filesystem::create_directories(pair.session_folder);
+
   // The page can be opened before the module hears anything: tools/up waits for the latter only.
   DashboardServer server(options);
   TellAddresses(PageAddresses(rig.dashboard, server, options.token), address_file);
   Bus bus(args.lcm_url.value_or(rig.lcm_url));
-  DashboardNode node(ShownPairs(pairs, session, args.rig_path),
-                     PlanOfRig(args.rig_path, pairs),
-                     &bus,
-                     &server,
-                     session);
+  DashboardNode node(shown, PlanOfRig(args.rig_path, pairs), &bus, &server, session);
   if (!ip::make_address(options.address).is_loopback()) {
     spdlog::warn("the page can be reached over the network, without encryption: {}",
                  options.address);

@@ -237,6 +237,11 @@ bool Bus::HandleOnce(std::chrono::milliseconds timeout) {
   return status > 0;
 }
 
+void Bus::HandleWaiting() {
+  while (HandleOnce(std::chrono::milliseconds(0))) {
+  }
+}
+
 const std::map<std::string, ChannelCounts>& Bus::channels() const { return impl_->counts; }
 std::int64_t Bus::num_published() const { return impl_->num_published; }
 std::int64_t Bus::num_publish_failures() const { return impl_->num_publish_failures; }

@@ -76,6 +76,9 @@ class Bus {
   /// @throws what a handler threw (the first, if several of one message did), and
   ///     std::runtime_error if LCM fails.
   bool HandleOnce(std::chrono::milliseconds timeout);
+  /// Handles every message that waits, and those that come of them.
+  /// @throws as HandleOnce.
+  void HandleWaiting();
 
   const std::map<std::string, ChannelCounts>& channels() const;
   std::int64_t num_published() const;

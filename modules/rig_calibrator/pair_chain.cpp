@@ -1,15 +1,9 @@
 #include "rig_calibrator/pair_chain.hpp"
 
 #include <array>
-#include <chrono>
 #include <utility>
 
 namespace voqcal {
-
-void HandleWaiting(Bus* bus) {
-  while (bus->HandleOnce(std::chrono::milliseconds(0))) {
-  }
-}
 
 PairSession SessionOf(const Rig& rig) {
   PairSession session;
@@ -36,12 +30,12 @@ PairChain::PairChain(const Rig& rig,
       assessor_(rig, bus, session_folder, scene_views_) {}
 
 void PairChain::Run() {
-  HandleWaiting(&bus_);
+  bus_.HandleWaiting();
   const std::array<Module*, 4> stages = {&selector_, &estimator_, &refiner_, &assessor_};
   for (Module* stage : stages) {
     while (stage->Step()) {
     }
-    HandleWaiting(&bus_);
+    bus_.HandleWaiting();
   }
 }
 

@@ -15,9 +15,6 @@
 
 namespace voqcal {
 
-/// Every message that waits.
-void HandleWaiting(Bus* bus);
-
 /// What its session is of; nothing came of it yet.
 PairSession SessionOf(const Rig& rig);
 

@@ -74,7 +74,7 @@ PairSession RigCalibratorNode::Chain::Calibrate(const samples_t& message,
   bus.Publish(rig.channels.calib_samples, message);
   modules.Run();
   guide.Step();
-  HandleWaiting(&bus);
+  bus.HandleWaiting();
   PairSession session = SessionOf(rig);
   if (modules.assessor().HasAssessed(message)) {
     TakeResult(samples, modules.assessor().result(), modules.assessor().problem(), &session);

@@ -1,5 +1,8 @@
 #include "camera_board_detector/camera_board_detector_node.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -10,6 +13,7 @@
 #include "core/assessment/lens_cause.hpp"
 #include "core/expected.hpp"
 #include "core/format.hpp"
+#include "core/median.hpp"
 #include "messaging/convert_board.hpp"
 #include "messaging/convert_image.hpp"
 
@@ -53,6 +57,17 @@ Expected<CameraBoard, Miss> BoardIn(const image_t& message, const Rig& rig) {
   return std::move(*board);
 }
 
+// Of the corners that both views show; 0 if there are none.
+double MedianDistancePx(const std::vector<Eigen::Vector2d>& a,
+                        const std::vector<Eigen::Vector2d>& b) {
+  std::vector<double> distances_px;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    const double distance_px = (a[i] - b[i]).norm();
+    if (std::isfinite(distance_px)) distances_px.push_back(distance_px);
+  }
+  return distances_px.empty() ? 0.0 : Median(distances_px);
+}
+
 }  // namespace
 
 CameraBoardDetectorNode::CameraBoardDetectorNode(const Rig& rig, Bus* bus) : rig_(rig), bus_(*bus) {
@@ -62,26 +77,41 @@ CameraBoardDetectorNode::CameraBoardDetectorNode(const Rig& rig, Bus* bus) : rig
 }
 
 std::string CameraBoardDetectorNode::State() const {
-  const bool is_now = !lens_trouble_.empty() && num_unposed_ > num_boards_;
+  const bool is_now = !lens_trouble_.empty() && AreMostUnposed();
   return is_now ? "trouble: " + lens_trouble_ : Module::State();
 }
 
+bool CameraBoardDetectorNode::AreMostUnposed() const {
+  const auto num = std::count(is_unposed_.begin(), is_unposed_.end(), true);
+  return 2 * static_cast<std::size_t>(num) > is_unposed_.size();
+}
+
 void CameraBoardDetectorNode::KeepUnposed(const std::vector<Eigen::Vector2d>& corners_px) {
-  constexpr std::size_t kFirstAsked = 5;
+  constexpr double kMovedShare = 0.02;  // of the image's width: a board at rest is one view
   constexpr std::size_t kMostKept = 40;
-  ++num_unposed_;
-  if (unposed_px_.size() == kMostKept) return;
-  unposed_px_.push_back(corners_px);
-  const std::size_t num = unposed_px_.size();
-  const bool is_to_be_asked = num == kFirstAsked || num == 2 * kFirstAsked || num == kMostKept;
-  if (!is_to_be_asked || num_unposed_ <= num_boards_) return;
-  const auto cause = FindLensCause(
-      unposed_px_, rig_.board, rig_.camera, rig_.camera_board_detector.max_reprojection_rms_px);
-  lens_trouble_ = cause ? Format("%s; %s (%zu of %zu images of the board fit then)",
-                                 cause->claim.c_str(),
-                                 cause->remedy.c_str(),
-                                 cause->num_fitting,
-                                 num)
+  const double moved_px = kMovedShare * rig_.camera.width_px;
+  const bool is_new =
+      std::all_of(unposed_px_.begin(), unposed_px_.end(), [&](const auto& other_px) {
+        return MedianDistancePx(corners_px, other_px) > moved_px;
+      });
+  if (is_new) {
+    unposed_px_.push_back(corners_px);
+    ++num_kept_;
+    if (unposed_px_.size() > kMostKept) unposed_px_.pop_front();
+  }
+  if (num_kept_ < ask_at_ || !AreMostUnposed()) return;
+  ask_at_ = 2 * num_kept_;
+  const auto cause = FindLensCause({unposed_px_.begin(), unposed_px_.end()},
+                                   rig_.board,
+                                   rig_.camera,
+                                   rig_.camera_board_detector.max_reprojection_rms_px);
+  lens_trouble_ = cause ? Format(
+                              "The board's images do not fit the rig file's camera: %s; %s "
+                              "(%zu of %zu views of the board fit then)",
+                              cause->claim.c_str(),
+                              cause->remedy.c_str(),
+                              cause->num_fitting,
+                              unposed_px_.size())
                         : "";
 }
 
@@ -90,11 +120,14 @@ void CameraBoardDetectorNode::OnImage(const image_t& message) {
   const Miss miss = board ? Miss{} : board.error();
   Count(board ? "boards" : miss.reason);
   if (board) {
-    ++num_boards_;
     for (const SightingWarning& warning : board->warnings) Count("boards: " + warning.reason);
-  } else if (!miss.corners_px.empty()) {
-    KeepUnposed(miss.corners_px);
   }
+  if (board || !miss.corners_px.empty()) {
+    constexpr std::size_t kRecent = 40;
+    is_unposed_.push_back(!board);
+    if (is_unposed_.size() > kRecent) is_unposed_.pop_front();
+  }
+  if (!miss.corners_px.empty()) KeepUnposed(miss.corners_px);
   bus_.Publish(rig_.channels.camera_board,
                CameraBoardMessage(board ? std::optional(*board) : std::nullopt,
                                   miss.reason,

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -25,15 +27,18 @@ class CameraBoardDetectorNode : public Module {
 
  private:
   void OnImage(const image_t& message);
-  /// Keeps a view whose corners fit no pose, and asks now and then what that tells of the lens.
+  /// Keeps a view whose corners fit no pose, if it is another than those kept, and asks now and
+  /// then what they tell of the lens.
   void KeepUnposed(const std::vector<Eigen::Vector2d>& corners_px);
+  bool AreMostUnposed() const;
 
   Rig rig_;
   Bus& bus_;
   std::int64_t seq_ = 0;
-  std::int64_t num_boards_ = 0;
-  std::int64_t num_unposed_ = 0;  // images that show the pattern, in no pose
-  std::vector<std::vector<Eigen::Vector2d>> unposed_px_;  // the first of them
+  std::deque<bool> is_unposed_;                          // of the last images that show the pattern
+  std::deque<std::vector<Eigen::Vector2d>> unposed_px_;  // views that differ, the newest last
+  std::size_t num_kept_ = 0;                             // of them, ever
+  std::size_t ask_at_ = 5;                               // of num_kept_
   std::string lens_trouble_;
 };
 

@@ -188,6 +188,7 @@ std::string DashboardNode::NextPair(const std::vector<PairRow>& rows, Clock::tim
     const rig_pair_t* result = ResultOf(rig);
     if (result == nullptr) return rig_->weakest_pair;
     PairNeed need = NeedOf(*result, rows[i].next_pose);
+    if (rows[i].result == nullptr) need.grade.reset();  // of samples that a reset took away
     need.can_be_sampled = CanBeSampled(rig.channels, now);
     is_any_good = is_any_good || need.can_be_sampled;
     if (result->name == rig_->weakest_pair) is_weakest_good = need.can_be_sampled;

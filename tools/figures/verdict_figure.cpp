@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/assessment/lens_cause.hpp"
+#include "core/camera_detection/planar_pose.hpp"
 #include "core/simulation/simulation.hpp"
 #include "figures/figures.hpp"
 #include "figures/real_session.hpp"
@@ -100,15 +101,20 @@ std::string CauseIn(const std::string& problem) {
   return problem.substr(from, problem.find(':', from) - from);
 }
 
-// As the camera's board detector: corners that fit no pose well make no sample, and tell of the
-// lens if they are the most.
+// What the camera's board detector says of views that it refuses: their corners fit no pose well,
+// make no sample, and tell of the lens if they are the most.
 std::optional<LensCause> LensCauseOfRefused(const GivenSession& clean,
                                             const GivenSession& session,
                                             double max_rms_px) {
-  if (2 * session.samples.size() >= clean.samples.size()) return {};
-  std::vector<std::vector<Eigen::Vector2d>> views_px;
-  for (const BoardSample& sample : clean.samples) views_px.push_back(sample.camera.corners_px);
-  return FindLensCause(views_px, session.board, session.camera, max_rms_px);
+  const std::vector<Eigen::Vector3d> corners_board_m = session.board.InnerCornersBoardM();
+  std::vector<std::vector<Eigen::Vector2d>> refused_px;
+  for (const BoardSample& sample : clean.samples) {
+    const auto fit = FitSeenCorners(session.camera, corners_board_m, sample.camera.corners_px);
+    if (fit && fit->reprojection_rms_px <= max_rms_px) continue;
+    refused_px.push_back(sample.camera.corners_px);
+  }
+  if (2 * refused_px.size() <= clean.samples.size()) return {};
+  return FindLensCause(refused_px, session.board, session.camera, max_rms_px);
 }
 
 /// @param clean  the session without a fault.

@@ -21,11 +21,13 @@ struct LensCause {
 };
 
 /// Why images show the pattern, and its corners fit no pose of the board: which answer to
-/// QuestionsAbout the rig makes most of them fit. No lidar is needed to tell: a plane seen through
-/// the wrong lens is none.
-/// @param views_px    of each image the inner corners, in BoardSpec::InnerCornersBoardM order.
+/// QuestionsAboutLens makes most of them fit, and far better than as it is; of several the one with
+/// the smallest median RMS. No lidar is needed to tell: a plane seen through the wrong lens is
+/// none.
+/// @param views_px    of each image the inner corners, in BoardSpec::InnerCornersBoardM order; NaN:
+///     not seen.
 /// @param max_rms_px  of the reprojection, of a view that fits.
-/// @return nothing if there are fewer than five views, or no answer makes most of them fit.
+/// @return nothing if there are fewer than five views, or no answer does.
 std::optional<LensCause> FindLensCause(const std::vector<std::vector<Eigen::Vector2d>>& views_px,
                                        const BoardSpec& board,
                                        const CameraModel& camera,

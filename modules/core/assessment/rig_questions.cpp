@@ -41,6 +41,7 @@ void AskAboutLens(const CameraModel& camera, std::vector<RigQuestion>* questions
   if (is_straight) return;
   other = camera;
   other.distortion = {};
+  if (camera.lens == LensModel::kEquidistant) other.lens = LensModel::kPlumbBob;  // a pinhole
   ask("rectified images", "the images are rectified already", other);
   for (std::size_t i = 0; i < d.size(); ++i) other.distortion[i] = -d[i];
   ask("distortion", "the coefficients' signs are turned", other);
@@ -130,10 +131,15 @@ void AskAboutSquares(const BoardSpec& board, std::vector<RigQuestion>* questions
 
 }  // namespace
 
-std::vector<RigQuestion> QuestionsAbout(const BoardSpec& board, const CameraModel& camera) {
+std::vector<RigQuestion> QuestionsAboutLens(const CameraModel& camera) {
   std::vector<RigQuestion> questions;
   AskAboutLens(camera, &questions);
   AskAboutImageSize(camera, &questions);
+  return questions;
+}
+
+std::vector<RigQuestion> QuestionsAbout(const BoardSpec& board, const CameraModel& camera) {
+  std::vector<RigQuestion> questions = QuestionsAboutLens(camera);
   AskAboutPattern(board, &questions);
   AskAboutSquares(board, &questions);
   AskAboutSensors(&questions);

@@ -16,6 +16,9 @@ struct RigQuestion {
   std::function<void(GivenSession* session)> undo;
 };
 
+/// Those about the camera alone: its lens model, its coefficients, its images' size.
+std::vector<RigQuestion> QuestionsAboutLens(const CameraModel& camera);
+
 /// Those that make sense of such a board and camera: a sign of an offset that is not zero, ...
 std::vector<RigQuestion> QuestionsAbout(const BoardSpec& board, const CameraModel& camera);
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
 #include "support/synthetic_samples.hpp"
 #include "support/test_cameras.hpp"
@@ -10,6 +11,7 @@
 namespace voqcal {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 constexpr double kMaxRmsPx = 1.5;
@@ -56,11 +58,29 @@ TEST(FindLensCause, NamesTheSizeOfTheImagesThatTheIntrinsicsAreOf) {
   const auto cause = CauseSaid(said, test::TestCamera());
   ASSERT_TRUE(cause);
   EXPECT_EQ(cause->cause, "image size");
+  EXPECT_THAT(cause->remedy, HasSubstr(Format("fx_px: %g", test::TestCamera().fx_px)));
+  EXPECT_EQ(cause->num_fitting, kNumViews);
+}
+
+TEST(FindLensCause, PrefersTheAnswerThatFitsBest) {
+  CameraModel pinhole = test::TestCamera();
+  pinhole.lens = LensModel::kPlumbBob;
+  pinhole.distortion = {};
+  const auto cause = CauseSaid(test::TestCamera(), pinhole);
+  ASSERT_TRUE(cause);
+  EXPECT_EQ(cause->cause, "rectified images");
+  EXPECT_THAT(cause->remedy, HasSubstr("plumb_bob"));
 }
 
 TEST(FindLensCause, SaysNothingOfCornersThatNoLensExplains) {
-  EXPECT_FALSE(FindLensCause(
-      ViewsThrough(test::TestCamera(), 10), test::TestBoard(), test::TestCamera(), kMaxRmsPx));
+  // Far above what corners are off by; and as little above the limit as some lens might mend.
+  for (const double noise_px : {10.0, 1.2}) {
+    EXPECT_FALSE(FindLensCause(ViewsThrough(test::TestCamera(), noise_px),
+                               test::TestBoard(),
+                               test::TestCamera(),
+                               kMaxRmsPx))
+        << noise_px;
+  }
 }
 
 TEST(FindLensCause, SaysNothingOfFewViews) {

@@ -118,22 +118,36 @@ TEST_F(CameraBoardDetectorNodeTest, DoesNotDecodeWhatCallsItselfHuge) {
   EXPECT_EQ(found()[2].miss, "unreadable image");
 }
 
-TEST_F(CameraBoardDetectorNodeTest, SaysWhichLensItsImagesWouldFit) {
-  Rig said = rig_;
-  said.camera.fx_px /= 2;
-  said.camera.fy_px /= 2;
-  said.camera.cx_px = (said.camera.cx_px + 0.5) / 2 - 0.5;
-  said.camera.cy_px = (said.camera.cy_px + 0.5) / 2 - 0.5;
+image_t ImageOfBoardAt(const Rig& rig, double x_m) {
+  Eigen::Isometry3d T_camera_board = BoardAhead();
+  T_camera_board.translation().x() = x_m;
+  return ToMessage(test::RenderBoard(rig.camera, rig.board, T_camera_board), 77, 0);
+}
+
+TEST_F(CameraBoardDetectorNodeTest, SaysWhichLensItsImagesWouldFitWhileTheyFitNone) {
+  Rig half = rig_;  // as an image of half the size would have it
+  half.camera.fx_px /= 2;
+  half.camera.fy_px /= 2;
+  half.camera.cx_px = (half.camera.cx_px + 0.5) / 2 - 0.5;
+  half.camera.cy_px = (half.camera.cy_px + 0.5) / 2 - 0.5;
   Bus bus{"memq://"};
-  CameraBoardDetectorNode node{said, &bus};
-  const image_t image = ToMessage(ImageOfBoard(rig_), 77, 0);
-  for (int i = 0; i < 4; ++i) test::Send(&bus, said.channels.camera_image, image);
+  CameraBoardDetectorNode node{half, &bus};
+  const auto show = [&](const Rig& seen_by, double x_m) {
+    test::Send(&bus, half.channels.camera_image, ImageOfBoardAt(seen_by, x_m));
+  };
+  for (int i = 0; i < 10; ++i) show(rig_, 0.0);  // at rest: one view
   EXPECT_EQ(node.State(), "running");
-  test::Send(&bus, said.channels.camera_image, image);
+  for (const double x_m : {-0.3, -0.15, 0.15, 0.3}) show(rig_, x_m);
   EXPECT_THAT(node.State(),
-              ::testing::StartsWith("trouble: the intrinsics are those of images of another size; "
-                                    "give camera.fx_px: "));
-  EXPECT_THAT(node.State(), HasSubstr("(5 of 5 images of the board fit then)"));
+              ::testing::StartsWith(
+                  "trouble: The board's images do not fit the rig file's camera: the intrinsics "
+                  "are those of images of another size; give camera.fx_px: "));
+  EXPECT_THAT(node.State(), HasSubstr("(5 of 5 views of the board fit then)"));
+  for (int i = 0; i < 14; ++i) {
+    EXPECT_NE(node.State(), "running") << i;
+    show(half, 0.0);
+  }
+  EXPECT_EQ(node.State(), "running") << "as many fit now";
 }
 
 TEST_F(CameraBoardDetectorNodeTest, CarriesAndCountsWarnings) {

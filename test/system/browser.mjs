@@ -26,12 +26,22 @@ function chromiumPath() {
   }
 }
 
+/** Longer than anything takes on a busy machine, and shorter than a test may take. */
+const PATIENCE_MS = 90_000;
+
 /**
  * Waits until `condition`, which runs in the page with `argument`, holds. (Playwright's own way needs eval, which
- * the dashboard forbids its page.) Who waits for ever is ended by ctest.
+ * the dashboard forbids its page.) Throws with what the page shows if it never does.
  */
 export async function until(page, condition, argument) {
-  while (!(await page.evaluate(condition, argument))) await page.waitForTimeout(100);
+  const end = performance.now() + PATIENCE_MS;
+  while (!(await page.evaluate(condition, argument))) {
+    if (performance.now() > end) {
+      const shown = await page.evaluate(() => document.body.innerText);
+      throw new Error(`waited ${PATIENCE_MS / 1000} s in vain for ${condition} with ${JSON.stringify(argument)}; the page:\n${shown}`);
+    }
+    await page.waitForTimeout(100);
+  }
 }
 
 /** A browser context with a profile of its own, and how to close it; flags: what Chromium is told besides. */

@@ -125,7 +125,9 @@ async function loseACamera() {
   await button("roof_rear").click();
   await until(() => /^Wait with the board\. The camera rear/.test(document.getElementById("advice").textContent));
   supervisorctl("signal", "CONT", "camera_driver_rear");
-  await until(() => document.getElementById("faults").hidden);
+  // A busy machine may have lost messages, which stays said.
+  await until(() => !/camera rear/.test(document.getElementById("faults").innerText));
+  await until(() => document.querySelector('[data-pair="roof_rear"] .state').textContent !== "rear is silent");
   say("a silent camera was told");
 }
 

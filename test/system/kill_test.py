@@ -11,7 +11,6 @@ its own.
 """
 
 import argparse
-import collections
 import hashlib
 import os
 import pathlib
@@ -103,18 +102,10 @@ def kill_module(session, module):
 
 
 def lost_by_recorder(session):
-    """Where a sensor's frames, which come at one rate, leave a gap: lcm-logger loses datagrams on an overloaded machine,
-    and a recording without them tells nothing of the modules."""
-    times = collections.defaultdict(list)
-    for channel, message in log_events(session / "raw.lcm"):
-        if channel.startswith(("LIDAR_POINTS", "CAMERA_IMAGE")):
-            times[channel].append(int.from_bytes(message[8:16], "big"))  # utime, behind the type's hash
-    lost = []
-    for channel, utimes in times.items():
-        steps = [after - before for before, after in zip(utimes, utimes[1:])]
-        usual = sorted(steps)[len(steps) // 2] if steps else 0
-        lost += [f"{channel} after frame {i + 1}" for i, step in enumerate(steps) if step > 1.5 * usual]
-    return lost
+    """What the recording lacks by the sensors' own numbers: lcm-logger loses datagrams on an overloaded machine, and a
+    recording without them tells nothing of the modules."""
+    return subprocess.run([BIN / "check_recording", "--quiet", session / "raw.lcm"], check=False, capture_output=True,
+                          text=True).stdout
 
 
 def results_of_recording(rig, session):
@@ -176,11 +167,11 @@ def run_undisturbed(rig, session, tries=MOST_TRIES):
     if "rig_extrinsics.yaml" in result:
         lost = lost_by_recorder(session)
         if lost and tries > 1:
-            print(f"once more: the recorder lost {', '.join(lost)}", flush=True)
+            print(f"once more: {lost.strip()}", flush=True)
             shutil.rmtree(session)
             return run_undisturbed(rig, session, tries - 1)
         if results_of_recording(rig, session) != result:
-            sys.exit(f"calibrate_rig makes another result of {session}/raw.lcm (lost: {', '.join(lost) or 'nothing'})")
+            sys.exit(f"calibrate_rig makes another result of {session}/raw.lcm ({lost.strip() or 'it lacks nothing'})")
     return result, duration
 
 
@@ -228,7 +219,7 @@ def main():
             continue  # a driver that had ended: at another moment
         lost = lost_by_recorder(session) if is_rig else []
         if lost and num_tries < MOST_TRIES:
-            print(f"once more: the recorder lost {', '.join(lost)}", flush=True)
+            print(f"once more: {lost.strip()}", flush=True)
             num_tries += 1
             next_kill -= args.at_once
             continue

@@ -1,6 +1,6 @@
 // A browser as people have one, for the scripts beside this file. Ends with 77 where there is no Chromium.
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -67,4 +67,45 @@ export async function openBrowser(flags = []) {
     rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
   };
   return { context, close };
+}
+
+/** The page of a live session: what the scripts do with it, and `end`, which says the problems and sets the exit status. */
+export async function openSession(session) {
+  const { context, close } = await openBrowser();
+  const page = await context.newPage();
+  let isServerDown = false;
+  page.on("console", (message) => {
+    // Chromium reports each connection that fails; while there is no server they must.
+    if (message.type() === "error" && !isServerDown) problems.push(`console: ${message.text()}`);
+  });
+  page.on("pageerror", (error) => problems.push(error.message));
+
+  const waitUntil = (condition, argument) => until(page, condition, argument);
+  const supervisorctl = (...args) => execFileSync("supervisorctl", ["-c", join(session, "supervisor.conf"), ...args]);
+  /** Kills the server, which is started again; `meanwhile` runs once the page has seen that it is gone. */
+  async function killServer(meanwhile = async () => {}) {
+    const untilLive = (isLive) =>
+      waitUntil((isLive) => (document.getElementById("connection").dataset.state === "live") === isLive, isLive);
+    isServerDown = true;
+    supervisorctl("signal", "KILL", "dashboard");
+    await untilLive(false);
+    await meanwhile();
+    await untilLive(true);
+    isServerDown = false;
+  }
+  async function end() {
+    await close();
+    for (const problem of problems) say(problem);
+    process.exitCode = problems.length === 0 ? 0 : 1;
+  }
+  return {
+    context,
+    page,
+    url: readFileSync(join(session, "dashboard_url.txt"), "utf8").trim(),
+    text: (id) => page.locator(`#${id}`).innerText(),
+    until: waitUntil,
+    supervisorctl,
+    killServer,
+    end,
+  };
 }

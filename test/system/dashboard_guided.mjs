@@ -6,15 +6,10 @@ import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { SIZES, demand, openBrowser, problems, say, until as untilInPage } from "./browser.mjs";
+import { SIZES, demand, openSession, say } from "./browser.mjs";
 
 const [session, folder] = process.argv.slice(2);
-const { context, close } = await openBrowser();
-const page = await context.newPage();
-page.on("console", (message) => message.type() === "error" && problems.push(`console: ${message.text()}`));
-page.on("pageerror", (error) => problems.push(error.message));
-const text = (id) => page.locator(`#${id}`).innerText();
-const until = (condition, argument) => untilInPage(page, condition, argument);
+const { page, url, text, until, end } = await openSession(session);
 
 function switchSensorsOn() {
   const up = fileURLToPath(new URL("../../tools/up", import.meta.url));
@@ -66,13 +61,11 @@ async function exportResult() {
 }
 
 await page.setViewportSize(SIZES.phone);
-await page.goto(readFileSync(join(session, "dashboard_url.txt"), "utf8").trim());
+await page.goto(url);
 await until(() => document.getElementById("connection").dataset.state !== "connecting");
 switchSensorsOn();
 await followTheGuidance();
 await finish();
 await exportResult();
 for (const size of ["phone", "desktop"]) await look("end", size);
-await close();
-for (const problem of problems) say(problem);
-process.exitCode = problems.length === 0 ? 0 : 1;
+await end();

@@ -1,24 +1,12 @@
 // dashboard_rig.mjs SESSION [FOLDER]: a live session of a rig of several sensors in a browser: the pairs, the next
 // and the operator's own choice, a camera that falls silent, the end. Ends with 1 and a line for each thing that is
 // wrong. With FOLDER it leaves screenshots there. 77: no Chromium here.
-import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { SIZES, demand, openBrowser, problems, say, until as untilInPage } from "./browser.mjs";
+import { SIZES, demand, openSession, say } from "./browser.mjs";
 
 const [session, folder] = process.argv.slice(2);
-const { context, close } = await openBrowser();
-const page = await context.newPage();
-let isServerDown = false;
-page.on("console", (message) => {
-  // Chromium reports each connection that fails; while there is no server they must.
-  if (message.type() === "error" && !isServerDown) problems.push(`console: ${message.text()}`);
-});
-page.on("pageerror", (error) => problems.push(error.message));
-
-const text = (id) => page.locator(`#${id}`).innerText();
-const until = (condition, argument) => untilInPage(page, condition, argument);
-const supervisorctl = (...args) => execFileSync("supervisorctl", ["-c", join(session, "supervisor.conf"), ...args]);
+const { page, url, text, until, supervisorctl, killServer, end } = await openSession(session);
 const button = (name) => page.locator(`[data-pair="${name}"]`);
 const shown = () => page.locator('#pairs [aria-pressed="true"]').getAttribute("data-pair");
 const titleOf = (name) => name.replace("_", " → ");
@@ -92,13 +80,11 @@ async function seeAnew(name, before) {
 
 /** The server that is started again begins with its first pair. */
 async function surviveTheServer(name) {
-  isServerDown = true;
-  supervisorctl("signal", "KILL", "dashboard");
-  await until(() => document.getElementById("connection").dataset.state !== "live");
   const utime = (id) => page.locator(`#${id}`).getAttribute("data-utime");
-  const before = { image: await utime("image"), scene: await utime("scene") };
-  await until(() => document.getElementById("connection").dataset.state === "live");
-  isServerDown = false;
+  const before = {};
+  await killServer(async () => {
+    for (const id of ["image", "scene"]) before[id] = await utime(id);
+  });
   await seeAnew(name, before);
 }
 
@@ -159,7 +145,7 @@ async function resetAll() {
 }
 
 await page.setViewportSize(SIZES.phone);
-await page.goto(readFileSync(join(session, "dashboard_url.txt"), "utf8").trim());
+await page.goto(url);
 await seeAllPairs();
 await look("phone", "begin");
 await followTheNext();
@@ -177,6 +163,4 @@ await lookAtAll("finished");
 // The sensors are laid down first: what they still see would be a sample of the new session.
 supervisorctl("stop", ...["roof", "bumper"].map((name) => `lidar_driver_${name}`));
 await resetAll();
-await close();
-for (const problem of problems) say(problem);
-process.exitCode = problems.length === 0 ? 0 : 1;
+await end();

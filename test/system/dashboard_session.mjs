@@ -1,33 +1,20 @@
 // dashboard_session.mjs SESSION [FOLDER]: a live session in a browser, from its first samples to the export, by
 // clicks and keys alone; the server is killed in between. Ends with 1 and a line for each thing that is wrong.
 // With FOLDER it leaves screenshots there. 77: no Chromium here.
-import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { SIZES, demand, openBrowser, problems, say, until as untilInPage } from "./browser.mjs";
+import { SIZES, demand, openSession, problems, say } from "./browser.mjs";
 
 const [session, folder] = process.argv.slice(2);
-const { context, close } = await openBrowser();
-const page = await context.newPage();
-let isServerDown = false;
-page.on("console", (message) => {
-  // Chromium reports each connection that fails; while there is no server they must.
-  if (message.type() === "error" && !isServerDown) problems.push(`console: ${message.text()}`);
-});
-page.on("pageerror", (error) => problems.push(error.message));
-const url = readFileSync(join(session, "dashboard_url.txt"), "utf8").trim();
+const { context, page, url, text, until, supervisorctl, killServer, end } = await openSession(session);
 page.on("request", (request) => {
   const asked = request.url();
   if (!asked.startsWith(url) && !/^(blob|data):/.test(asked)) problems.push(`asks for ${asked}`);
 });
 
-const text = (id) => page.locator(`#${id}`).innerText();
 const numSamples = () => page.locator("#samples > li").count();
-const until = (condition, argument) => untilInPage(page, condition, argument);
 const untilSamples = (least) =>
   until((least) => document.querySelectorAll("#samples > li").length >= least, least);
-const untilState = (isLive) =>
-  until((isLive) => (document.getElementById("connection").dataset.state === "live") === isLive, isLive);
 const untilAnswered = () => until(() => document.getElementById("waiting").hidden);
 
 /** Runs in the page: what is wrong with it for a hand, a keyboard or a screen reader. */
@@ -59,7 +46,7 @@ async function look(name) {
 }
 
 async function seeTheSensors() {
-  await untilState(true);
+  await until(() => document.getElementById("connection").dataset.state === "live");
   await untilSamples(6);
   await until(() => document.getElementById("image").dataset.utime);
   await until(() => document.getElementById("scene").dataset.utime);
@@ -85,17 +72,10 @@ async function captureByKey() {
 
 async function surviveTheServer() {
   const before = await numSamples();
-  isServerDown = true;
-  supervisorctl("signal", "KILL", "dashboard");
-  await untilState(false);
-  await untilState(true);
-  isServerDown = false;
+  await killServer();
   await untilSamples(before);
   say("found the server again");
 }
-
-const supervisorctl = (...args) =>
-  execFileSync("supervisorctl", ["-c", join(session, "supervisor.conf"), ...args]);
 
 // The board is laid down first: a sample taken meanwhile would make the exported result that of an earlier set.
 async function finish() {
@@ -176,6 +156,4 @@ await readTheReport();
 await look("desktop");
 await exportAll();
 await reset();
-await close();
-for (const problem of problems) say(problem);
-process.exitCode = problems.length === 0 ? 0 : 1;
+await end();

@@ -1,21 +1,8 @@
-#include "sample_collector/sample_collector_node.hpp"
+// What the collector makes of boards and commands; its end is in sample_collector_finish_test.cpp.
 
-#include <algorithm>
-#include <map>
-#include <memory>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "modules/nodes/sample_collector_fixture.hpp"
 
 #include "files/sha256.hpp"
-#include "messaging/session_misses.hpp"
-#include "modules/nodes/node_test.hpp"
-#include "support/sightings.hpp"
-#include "support/temporary_folder.hpp"
-#include "voqcal/event_t.hpp"
-#include "voqcal/image_t.hpp"
-#include "voqcal/pointcloud2_t.hpp"
-#include "voqcal/samples_t.hpp"
 
 namespace voqcal {
 namespace {
@@ -24,67 +11,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
-
-class SampleCollectorNodeTest : public ::testing::Test {
- protected:
-  SampleCollectorNodeTest() { Restart(); }
-
-  void Restart() {
-    node_.reset();
-    inbox_.reset();
-    events_.reset();
-    bus_ = std::make_unique<Bus>("memq://");
-    node_ = std::make_unique<SampleCollectorNode>(rig_, bus_.get(), folder_.path());
-    inbox_ = std::make_unique<test::Inbox<samples_t>>(bus_.get(), rig_.channels.calib_samples);
-    events_ = std::make_unique<test::Inbox<event_t>>(bus_.get(), rig_.channels.calib_event);
-  }
-
-  /// The board rests at a pose over three frames, and a fourth that closes the third. Of the frames
-  /// listed the collector also sees what the detectors saw.
-  void ShowStop(int stop, const std::vector<std::size_t>& with_scene = {}) {
-    const auto frames = test::StillFrames(samples_, stop);
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (std::count(with_scene.begin(), with_scene.end(), i) != 0) {
-        pointcloud2_t sweep{};
-        sweep.utime = frames[i].lidar.utime;
-        sweep.seq = static_cast<std::int32_t>(i);
-        test::Send(bus_.get(), rig_.channels.lidar_points, sweep);
-        image_t image{};
-        image.utime = frames[i].camera.utime;
-        test::Send(bus_.get(), rig_.channels.camera_image, image);
-      }
-      test::Send(bus_.get(), rig_.channels.lidar_board, frames[i].lidar);
-      test::Send(bus_.get(), rig_.channels.camera_board, frames[i].camera);
-    }
-  }
-
-  void Command(const std::string& text, std::int64_t sample_id = 0, const std::string& pair = {}) {
-    command_t command{};
-    command.command = text;
-    command.sample_id = sample_id;
-    command.pair = pair;
-    test::Send(bus_.get(), rig_.channels.calib_command, command);
-  }
-
-  /// A second passes.
-  void Republish() {
-    node_->Step();
-    node_->Republish();
-    test::HandleAll(bus_.get());
-  }
-
-  std::vector<std::int64_t> Ids() const { return IdsOf(SamplesWithout(node_->samples(), {})); }
-  const samples_t& last() const { return inbox_->messages.back(); }
-  const event_t& last_event() const { return events_->messages.back(); }
-
-  Rig rig_ = test::TestRig();
-  test::TemporaryFolder folder_;
-  std::vector<BoardSample> samples_ = test::SynthesizeSamples({});
-  std::unique_ptr<Bus> bus_;
-  std::unique_ptr<SampleCollectorNode> node_;
-  std::unique_ptr<test::Inbox<samples_t>> inbox_;
-  std::unique_ptr<test::Inbox<event_t>> events_;
-};
 
 TEST_F(SampleCollectorNodeTest, AcceptsAStillNewPoseAndAnnouncesIt) {
   ShowStop(0);
@@ -199,22 +125,6 @@ TEST_F(SampleCollectorNodeTest, CaptureTakesASinglePair) {
   EXPECT_EQ(last_event().reason, "");
 }
 
-TEST_F(SampleCollectorNodeTest, ResetAndFinishTakeBackACaptureThatWaits) {
-  for (const std::string command : {"reset", "finish"}) {
-    Restart();
-    Command("capture");
-    Command(command);
-    Republish();
-    const auto frames = test::StillFrames(samples_, 0);
-    test::Send(bus_.get(), rig_.channels.lidar_board, frames[0].lidar);
-    test::Send(bus_.get(), rig_.channels.camera_board, frames[0].camera);
-    test::Send(bus_.get(), rig_.channels.camera_board, frames[1].camera);  // closes the pair
-    EXPECT_THAT(Ids(), IsEmpty()) << command;
-    // After "finish" no frame is even judged.
-    EXPECT_EQ(last_event().reason, command == "reset" ? "not yet still for long enough" : "");
-  }
-}
-
 TEST_F(SampleCollectorNodeTest, KeepsTheSweepAndTheImageOfTheSamplesFirstFrame) {
   ShowStop(0, {0, 1, 2});
   SessionSceneReader reader(folder_.path() / kSamplesLogName);
@@ -237,81 +147,6 @@ TEST_F(SampleCollectorNodeTest, SaysThatASamplesFramesWereLost) {
   EXPECT_FALSE(SessionSceneReader(folder_.path() / kSamplesLogName).Next());
 }
 
-TEST_F(SampleCollectorNodeTest, FinishesOnlyOnceNoFrameHasComeForASecond) {
-  ShowStop(0);
-  Command("finish");
-  Republish();  // frames have come since the last one
-  EXPECT_FALSE(last().is_finished);
-  ShowStop(1);  // detectors were still at work
-  Republish();
-  EXPECT_FALSE(last().is_finished);
-  node_->Republish();  // a stalled process: the queue has not been seen empty since
-  EXPECT_FALSE(last().is_finished);
-  Republish();
-  EXPECT_TRUE(last().is_finished);
-  EXPECT_EQ(last_event().kind, "finished");
-  EXPECT_EQ(node_->State(), "finished: 2 samples");
-}
-
-TEST_F(SampleCollectorNodeTest, FinishesWhileSensorsGoOnOnceDetectorsArePastIt) {
-  ShowStop(0, {0, 1, 2, 3});
-  const std::int64_t utime = test::StillFrames(samples_, 1).back().camera.utime;
-  image_t image{};
-  image.utime = utime;
-  test::Send(bus_.get(), rig_.channels.camera_image, image);
-  Command("finish");
-  ShowStop(1);        // detectors come up to that image, not past it
-  Command("finish");  // said again, it asks for nothing more
-  Republish();
-  EXPECT_FALSE(last().is_finished);
-  ShowStop(2);
-  Republish();
-  EXPECT_TRUE(last().is_finished);
-  EXPECT_EQ(node_->State(), "finished: 2 samples");  // what comes later is not taken...
-  Command("capture");
-  ShowStop(3);
-  EXPECT_THAT(Ids(), ElementsAre(1, 2, 3));  // ...until that is asked for
-  EXPECT_FALSE(last().is_finished);
-}
-
-// The camera never came, or has stopped: there is nothing of it to wait for.
-TEST_F(SampleCollectorNodeTest, FinishesThoughOneSensorIsSilentWhileTheOtherGoesOn) {
-  const auto frames = test::StillFrames(samples_, 0);
-  const auto show_to_lidar = [&](std::size_t i) {
-    pointcloud2_t sweep{};
-    sweep.utime = frames[i].lidar.utime;
-    test::Send(bus_.get(), rig_.channels.lidar_points, sweep);
-    test::Send(bus_.get(), rig_.channels.lidar_board, frames[i].lidar);
-  };
-  test::Send(bus_.get(), rig_.channels.camera_image, image_t{});
-  show_to_lidar(0);
-  Command("finish");
-  show_to_lidar(1);
-  Republish();  // the image's detector may still be at work
-  EXPECT_FALSE(last().is_finished);
-  show_to_lidar(2);
-  Republish();
-  EXPECT_TRUE(last().is_finished);
-}
-
-// As the end of its recording does: the replay gives the same samples.
-TEST_F(SampleCollectorNodeTest, FinishJudgesTheFramesThatWaitAlsoWhileSensorsGoOn) {
-  auto frames = test::StillFrames(samples_, 0);
-  frames.pop_back();  // nothing closes the third pair
-  for (const test::SightingMessages& frame : frames) {
-    test::Send(bus_.get(), rig_.channels.lidar_board, frame.lidar);
-    test::Send(bus_.get(), rig_.channels.camera_board, frame.camera);
-  }
-  image_t image{};
-  image.utime = frames.back().camera.utime;
-  test::Send(bus_.get(), rig_.channels.camera_image, image);
-  Command("finish");
-  ShowStop(1);
-  Republish();
-  EXPECT_THAT(Ids(), ElementsAre(1));
-  EXPECT_EQ(last_event().kind, "finished");
-}
-
 TEST_F(SampleCollectorNodeTest, SaysThatTheSensorsClocksDiffer) {
   for (std::int64_t frame = 0; frame < 4; ++frame) {
     pointcloud2_t sweep{};
@@ -322,54 +157,6 @@ TEST_F(SampleCollectorNodeTest, SaysThatTheSensorsClocksDiffer) {
     test::Send(bus_.get(), rig_.channels.camera_image, image);
   }
   EXPECT_THAT(node_->State(), HasSubstr("trouble: The camera's clock is 3599.9 s (60 min) ahead"));
-}
-
-TEST_F(SampleCollectorNodeTest, FinishJudgesTheFramesThatWait) {
-  auto frames = test::StillFrames(samples_, 0);
-  frames.pop_back();  // nothing closes the third pair
-  for (const test::SightingMessages& frame : frames) {
-    test::Send(bus_.get(), rig_.channels.lidar_board, frame.lidar);
-    test::Send(bus_.get(), rig_.channels.camera_board, frame.camera);
-  }
-  EXPECT_THAT(Ids(), IsEmpty());
-  node_->Finish();
-  EXPECT_THAT(Ids(), ElementsAre(1));
-}
-
-TEST_F(SampleCollectorNodeTest, KeepsFramesWithoutABoardWhereFinishLeavesTooFewSamples) {
-  constexpr int kNumFrames = 9;
-  for (int i = 0; i < kNumFrames; ++i) {
-    const std::int64_t utime = 100'000 * i;
-    pointcloud2_t sweep{};
-    sweep.utime = utime;
-    sweep.seq = i;
-    test::Send(bus_.get(), rig_.channels.lidar_points, sweep);
-    const std::string miss = "joined to something: " + std::to_string(i) + " mm";
-    test::Send(bus_.get(), rig_.channels.lidar_board, LidarBoardMessage({}, miss, utime, 0, i));
-    // Its image never came.
-    test::Send(bus_.get(),
-               rig_.channels.camera_board,
-               CameraBoardMessage(std::nullopt, "no board", "", utime, i));
-  }
-  node_->Finish();
-  const SessionMisses misses = ReadMisses(folder_.path());
-  std::map<std::string, std::int64_t> counts;
-  for (const counter_t& counter : misses.counts) counts[counter.name] = counter.count;
-  EXPECT_EQ(counts["LIDAR_MISS: joined to something: N mm"], kNumFrames);
-  EXPECT_EQ(counts["CAMERA_MISS: no board"], kNumFrames);
-  EXPECT_THAT(misses.images, IsEmpty());
-  // The fourth and the eighth of the reason, each with what was said of it.
-  ASSERT_THAT(misses.sweeps, SizeIs(2));
-  EXPECT_EQ(misses.sweeps[0].sweep.seq, 3);
-  EXPECT_EQ(misses.sweeps[1].sweep.seq, 7);
-  EXPECT_EQ(misses.sweeps[1].board.miss, "joined to something: 7 mm");
-
-  // With samples enough for a result there is nothing to explain.
-  Restart();
-  for (int stop = 0; stop < 3; ++stop) ShowStop(stop);
-  node_->Finish();
-  ASSERT_THAT(Ids(), SizeIs(3));
-  EXPECT_FALSE(std::filesystem::exists(folder_.path() / kMissesLogName));
 }
 
 // Nobody can tell whose boards they are.

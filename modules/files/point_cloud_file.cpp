@@ -44,6 +44,8 @@ PointCloud Convert(const CloudTable& table, const fs::path& path) {
   }
   const std::vector<double> rings = Column(table, "ring");
   if (!rings.empty()) SetRings(rings, &cloud);
+  const std::vector<double> return_numbers = Column(table, "return_number");
+  if (!return_numbers.empty()) SetReturnNumbers(return_numbers, &cloud);
   const std::vector<double> times = Column(table, "time");
   if (!times.empty()) SetTimes(times, &cloud);
   return cloud;

@@ -218,6 +218,7 @@ pointcloud2_t ToMessage(const PointCloud& cloud_lidar_m, std::int64_t utime, std
   if (cloud_lidar_m.has_intensity) AddField("intensity", kFloat32, &message);
   if (cloud_lidar_m.has_ring) AddField("ring", kUint16, &message);
   if (cloud_lidar_m.has_time) AddField("time", kFloat32, &message);
+  if (cloud_lidar_m.has_return_number) AddField("return_number", kUint8, &message);
 
   message.data.resize(cloud_lidar_m.points.size() * static_cast<std::size_t>(message.point_step));
   std::uint8_t* end = message.data.data();
@@ -227,6 +228,7 @@ pointcloud2_t ToMessage(const PointCloud& cloud_lidar_m, std::int64_t utime, std
     if (cloud_lidar_m.has_intensity) Put(point.intensity, &end);
     if (cloud_lidar_m.has_ring) Put(point.ring, &end);
     if (cloud_lidar_m.has_time) Put(point.time_s, &end);
+    if (cloud_lidar_m.has_return_number) Put(point.return_number, &end);
     is_dense = is_dense && point.position_m.allFinite();
   }
   message.height = 1;
@@ -247,14 +249,17 @@ PointCloud FromMessage(const pointcloud2_t& message) {
   const auto intensity = Reader(message, "intensity");
   const auto ring = Reader(message, "ring");
   const auto time = Reader(message, "time");
+  const auto return_number = Reader(message, "return_number");
   cloud.has_intensity = intensity.has_value();
 
   cloud.points.reserve(static_cast<std::size_t>(message.width) *
                        static_cast<std::size_t>(message.height));
   std::vector<double> rings;
   std::vector<double> times;
+  std::vector<double> return_numbers;
   if (ring) rings.reserve(cloud.points.capacity());
   if (time) times.reserve(cloud.points.capacity());
+  if (return_number) return_numbers.reserve(cloud.points.capacity());
   for (std::int64_t row = 0; row < message.height; ++row) {
     const std::uint8_t* bytes = message.data.data() + row * row_step;
     for (std::int32_t i = 0; i < message.width; ++i, bytes += message.point_step) {
@@ -263,10 +268,12 @@ PointCloud FromMessage(const pointcloud2_t& message) {
       if (intensity) point.intensity = static_cast<float>(intensity->Read(bytes));
       if (ring) rings.push_back(ring->Read(bytes));
       if (time) times.push_back(time->Read(bytes));
+      if (return_number) return_numbers.push_back(return_number->Read(bytes));
       cloud.points.push_back(point);
     }
   }
   if (ring) SetRings(rings, &cloud);
+  if (return_number) SetReturnNumbers(return_numbers, &cloud);
   if (time) SetPointTimes(std::move(times), time->IsInteger(), message.utime, &cloud);
   DropRepeatedPoints(&cloud);
   return cloud;

@@ -8,13 +8,14 @@
 namespace voqcal {
 
 /// Packs a cloud: x y z FLOAT32, then what the cloud carries of intensity FLOAT32, ring UINT16,
-/// time FLOAT32; little-endian, one row. Exact.
+/// time FLOAT32, return_number UINT8; little-endian, one row. Exact.
 pointcloud2_t ToMessage(const PointCloud& cloud_lidar_m, std::int64_t utime, std::int32_t seq);
 
 /// Reads any driver's cloud: fields in any order, of any number type, of either byte order, with
 /// rows padded or not.
 /// - "x" "y" "z": metres; they must be there.
-/// - "intensity", "ring" and "time" by any usual name (core/lidar/cloud_fields.hpp).
+/// - "intensity", "ring", "time" and "return_number" by any usual name
+///   (core/lidar/cloud_fields.hpp).
 /// - times: FLOAT32 and FLOAT64 are seconds, integers nanoseconds; values above 1e8 s count from
 ///   the epoch, others from utime.
 /// - a return that is there twice is read once (DropRepeatedPoints).

@@ -35,6 +35,8 @@ const Words& NamesOf(std::string_view field) {
         "time_offset",
         "timeoffset",
         "scalar_time"}},
+      {"return_number",
+       {"return_number", "returnnumber", "return_num", "echo_number", "echo", "scalar_returnnumber"}},
   };
   return kNames.at(field);
 }
@@ -53,6 +55,11 @@ bool HasReturn(const LidarPoint& point) {
 
 bool IsRing(double ring) {
   return ring >= 0 && ring <= std::numeric_limits<std::uint16_t>::max() && ring == std::floor(ring);
+}
+
+bool IsReturnNumber(double number) {
+  return number >= 0 && number <= std::numeric_limits<std::uint8_t>::max() &&
+         number == std::floor(number);
 }
 
 struct Range {
@@ -118,6 +125,17 @@ void SetRings(const std::vector<double>& rings, PointCloud* cloud) {
   cloud->has_ring = true;
   for (std::size_t i = 0; i < rings.size(); ++i) {
     if (IsRing(rings[i])) cloud->points[i].ring = static_cast<std::uint16_t>(rings[i]);
+  }
+}
+
+void SetReturnNumbers(const std::vector<double>& numbers, PointCloud* cloud) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (HasReturn(cloud->points[i]) && !IsReturnNumber(numbers[i])) return;
+  }
+  cloud->has_return_number = true;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!IsReturnNumber(numbers[i])) continue;
+    cloud->points[i].return_number = static_cast<std::uint8_t>(numbers[i]);
   }
 }
 

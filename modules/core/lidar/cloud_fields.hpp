@@ -13,7 +13,7 @@ namespace voqcal {
 /// either size: "intensity" is also reflectivity or i, "ring" channel or line, "time" t or
 /// timestamp. Nothing if it is not there.
 ///
-/// @param field  "x", "y", "z", "intensity", "ring" or "time".
+/// @param field  "x", "y", "z", "intensity", "ring", "time" or "return_number".
 std::optional<std::size_t> FindField(const std::vector<std::string>& names, std::string_view field);
 
 /// Gives each point its ring. Where no beam returned, drivers write NaN, -1 or whatever was there:
@@ -22,6 +22,12 @@ std::optional<std::size_t> FindField(const std::vector<std::string>& names, std:
 ///
 /// @param rings  as they were read, one for each point of the cloud.
 void SetRings(const std::vector<double>& rings, PointCloud* cloud);
+
+/// Gives each point its number among its beam's echoes. Anything but a whole number from 0 to 255
+/// where a beam returned is none, and the cloud one without such numbers.
+///
+/// @param numbers  as they were read, one for each point of the cloud.
+void SetReturnNumbers(const std::vector<double>& numbers, PointCloud* cloud);
 
 /// Gives each point its time. What the numbers count (seconds to nanoseconds) is told by their
 /// range, as sweeps last 4 ms to 2.5 s; numbers far from 0 are of some clock: of the stamp's, if

@@ -12,7 +12,7 @@ struct LidarPoint {
   Eigen::Vector3f position_m = Eigen::Vector3f::Zero();  ///< Lidar frame: x forward, y left, z up.
   float intensity = 0.0F;                                ///< The sensor's own scale.
   std::uint16_t ring = 0;                                ///< Scan line, counted from the lowest.
-  std::uint8_t return_number = 0;                        ///< Of its beam's echoes, the nearest is 1.
+  std::uint8_t return_number = 0;                        ///< Among its beam's echoes.
   float time_s = 0.0F;                                   ///< After the cloud's utime.
 };
 

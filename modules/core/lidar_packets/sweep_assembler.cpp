@@ -18,7 +18,11 @@ PointCloud TimedSweep::Cloud(bool has_ring) const {
   cloud.has_intensity = cloud.has_time = true;
   cloud.has_ring = has_ring;
   cloud.points.reserve(returns.size());
-  for (const PacketReturn& measured : returns) cloud.points.push_back(measured.point);
+  for (const PacketReturn& measured : returns) {
+    cloud.points.push_back(measured.point);
+    cloud.points.back().return_number = static_cast<std::uint8_t>(measured.number);
+    cloud.has_return_number = cloud.has_return_number || measured.of_how_many > 1;
+  }
   return cloud;
 }
 

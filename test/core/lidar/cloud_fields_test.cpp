@@ -21,6 +21,7 @@ TEST(FindField, KnowsUsualNamesInLettersOfEitherSize) {
   EXPECT_EQ(FindField({"i", "x"}, "intensity"), 0U);
   EXPECT_EQ(FindField({"channel", "ring"}, "ring"), 1U);  // the more exact name first
   EXPECT_EQ(FindField({"time_stamp"}, "time"), 0U);
+  EXPECT_EQ(FindField({"ReturnNumber"}, "return_number"), 0U);
   EXPECT_EQ(FindField({"scalar_intensity_2", "rings"}, "intensity"), std::nullopt);
   EXPECT_EQ(FindField({}, "x"), std::nullopt);
 }
@@ -42,6 +43,23 @@ TEST(SetRings, ThatAreNoneMakeACloudWithoutRings) {
     SetRings({4, 5, bad}, &cloud);
     EXPECT_FALSE(cloud.has_ring);
     EXPECT_EQ(cloud.points[0].ring, 0);
+  }
+}
+
+TEST(SetReturnNumbers, LooksOnlyWhereABeamReturned) {
+  PointCloud cloud = ThreePoints();
+  SetReturnNumbers({1, NAN, 2}, &cloud);
+  EXPECT_TRUE(cloud.has_return_number);
+  EXPECT_EQ(cloud.points[0].return_number, 1);
+  EXPECT_EQ(cloud.points[2].return_number, 2);
+}
+
+TEST(SetReturnNumbers, ThatAreNoneMakeACloudWithoutThem) {
+  for (const double bad : std::vector<double>{NAN, -1.0, 0.5, 256.0}) {
+    PointCloud cloud = ThreePoints();
+    SetReturnNumbers({1, 2, bad}, &cloud);
+    EXPECT_FALSE(cloud.has_return_number);
+    EXPECT_EQ(cloud.points[0].return_number, 0);
   }
 }
 

@@ -23,12 +23,14 @@ PointCloud Cloud() {
   cloud.has_intensity = true;
   cloud.has_ring = true;
   cloud.has_time = true;
+  cloud.has_return_number = true;
   for (int i = 0; i < 3; ++i) {
     LidarPoint point;
     point.position_m = Eigen::Vector3f(1.1F, -2.2F, 0.3F) * static_cast<float>(i + 1);
     point.intensity = 0.7F * static_cast<float>(i);
     point.ring = static_cast<std::uint16_t>(65535 - i);
     point.time_s = 1e-4F * static_cast<float>(i);
+    point.return_number = static_cast<std::uint8_t>(i + 1);
     cloud.points.push_back(point);
   }
   return cloud;
@@ -38,12 +40,14 @@ void ExpectSame(const PointCloud& a, const PointCloud& b) {
   EXPECT_EQ(a.has_intensity, b.has_intensity);
   EXPECT_EQ(a.has_ring, b.has_ring);
   EXPECT_EQ(a.has_time, b.has_time);
+  EXPECT_EQ(a.has_return_number, b.has_return_number);
   ASSERT_EQ(a.points.size(), b.points.size());
   for (std::size_t i = 0; i < a.points.size(); ++i) {
     EXPECT_EQ(a.points[i].position_m, b.points[i].position_m);
     EXPECT_EQ(a.points[i].intensity, b.points[i].intensity);
     EXPECT_EQ(a.points[i].ring, b.points[i].ring);
     EXPECT_EQ(a.points[i].time_s, b.points[i].time_s);
+    EXPECT_EQ(a.points[i].return_number, b.points[i].return_number);
   }
 }
 
@@ -103,11 +107,12 @@ TEST(PointCloudMessage, ComesBackExactly) {
 
 TEST(PointCloudMessage, CarriesOnlyWhatTheCloudHas) {
   PointCloud cloud = Cloud();
-  cloud.has_intensity = cloud.has_ring = cloud.has_time = false;
+  cloud.has_intensity = cloud.has_ring = cloud.has_time = cloud.has_return_number = false;
   for (LidarPoint& point : cloud.points) {
     point.intensity = 0;
     point.ring = 0;
     point.time_s = 0;
+    point.return_number = 0;
   }
   const pointcloud2_t message = ToMessage(cloud, kUtime, 5);
   EXPECT_EQ(message.nfields, 3);

@@ -170,12 +170,13 @@ test("points in millimetres, in a map's frame, or none: said", () => {
 });
 
 test("Livox' own messages", () => {
-  const points = [{ offset_time: 5_000_000, x: 1, y: 2, z: 3, reflectivity: 9, tag: 0, line: 4 }];
+  const points = [{ offset_time: 5_000_000, x: 1, y: 2, z: 3, reflectivity: 9, tag: 0x10, line: 4 }];
   const { fields, data, width } = cloudToLcm(asCloud({ header, points }, "livox_ros_driver2/CustomMsg"), 0n, 0, undefined);
-  assert.deepEqual(fields.map(({ name }) => name), ["x", "y", "z", "intensity", "ring", "time"]);
+  assert.deepEqual(fields.map(({ name }) => name), ["x", "y", "z", "intensity", "ring", "time", "return_number"]);
   assert.equal(width, 1);
   assert.deepEqual([data.readFloatLE(8), data.readFloatLE(12), data.readUInt16LE(16)], [3, 9, 4]);
   assert.ok(Math.abs(data.readFloatLE(18) - 0.005) < 1e-9);
+  assert.equal(data.readUInt8(22), 2);
 });
 
 // ---- Cameras ---------------------------------------------------------------------------------------

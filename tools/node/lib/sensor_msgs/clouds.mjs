@@ -13,6 +13,7 @@ const NAMES = {
   intensity: ["intensity", "intensities", "reflectivity", "reflectance", "remission", "i", "scalar_intensity"],
   ring: ["ring", "channel", "line", "laser_id", "laserid", "beam", "scalar_ring"],
   time: ["time", "t", "timestamp", "time_stamp", "offset_time", "time_offset", "timeoffset", "scalar_time"],
+  return_number: ["return_number", "returnnumber", "return_num", "echo_number", "echo", "scalar_returnnumber"],
 };
 /** Every name that a field of a point is looked for by. */
 export const FIELD_NAMES = new Set(Object.values(NAMES).flat());

@@ -31,7 +31,9 @@ export const LIVOX_DEFINITIONS = Object.fromEntries(
   LIVOX_CLOUDS.map((type) => [type, CUSTOM(type.split("/")[0])]),
 );
 
-const POINT_BYTES = 22;
+const POINT_BYTES = 23;
+/** In a point's tag, from 0 on. */
+const echoOf = (tag) => (tag >> 4) & 3;
 
 /** CustomMsg as the PointCloud2 that the driver would have sent: metres, seconds after the stamp. */
 export function livoxToCloud({ header, points }) {
@@ -44,6 +46,7 @@ export function livoxToCloud({ header, points }) {
     data.writeFloatLE(point.reflectivity, at + 12);
     data.writeUInt16LE(point.line, at + 16);
     data.writeFloatLE(1e-9 * point.offset_time, at + 18);
+    data.writeUInt8(echoOf(point.tag) + 1, at + 22);
   });
   const field = (name, offset, datatype) => ({ name, offset, datatype, count: 1 });
   return {
@@ -54,6 +57,7 @@ export function livoxToCloud({ header, points }) {
       ...["x", "y", "z", "intensity"].map((name, i) => field(name, 4 * i, 7)),
       field("ring", 16, 4),
       field("time", 18, 7),
+      field("return_number", 22, 2),
     ],
     is_bigendian: false,
     point_step: POINT_BYTES,

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <exception>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -104,11 +105,14 @@ struct Bus::Impl {
   std::vector<std::unique_ptr<Subscription>> subscriptions;
   std::map<std::string, ChannelCounts> counts;
   std::map<std::string, ChannelMemory> memories;
+  std::string session;
+  std::set<std::string> foreign_sessions;  ///< That were warned of.
   std::exception_ptr thrown;  ///< By a handler, while C frames were on the stack.
   std::int64_t num_published = 0;
   std::int64_t num_publish_failures = 0;
 
   void Deliver(const Subscription& subscription, const void* bytes, std::size_t num_bytes);
+  bool IsForeign(const std::string& channel, const std::string& other_session);
   void CountMalformed(const std::string& channel, const std::string& problem);
   void CountLosses(const std::string& channel, std::int64_t sequence);
 };
@@ -121,6 +125,7 @@ void Bus::Impl::Deliver(const Subscription& subscription,
     if (subscription.keeps_counts) CountMalformed(subscription.channel, delivery.problem);
     return;
   }
+  if (IsForeign(subscription.channel, delivery.session)) return;
   if (subscription.keeps_counts) {
     ++counts[subscription.channel].num_received;
     if (delivery.sequence && subscription.queue == Queue::kEvery) {
@@ -128,6 +133,14 @@ void Bus::Impl::Deliver(const Subscription& subscription,
     }
   }
   delivery.handle();
+}
+
+bool Bus::Impl::IsForeign(const std::string& channel, const std::string& other_session) {
+  if (MayBeOf(session, other_session)) return false;
+  if (foreign_sessions.insert(other_session).second) {
+    spdlog::warn("{}: what session {} says is not taken; this one is {}", channel, other_session, session);
+  }
+  return true;
 }
 
 void Bus::Impl::CountMalformed(const std::string& channel, const std::string& problem) {
@@ -171,6 +184,10 @@ Bus::Bus(const std::string& url) : impl_(std::make_unique<Impl>()) {
 }
 
 Bus::~Bus() { lcm_destroy(impl_->lcm); }
+
+void Bus::SetSession(const std::string& session) { impl_->session = session; }
+
+const std::string& Bus::session() const { return impl_->session; }
 
 void Bus::SubscribeDecoder(const std::string& channel,
                            Queue queue,

@@ -45,6 +45,10 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
+  /// From now on what is published names this session (NameSession), and what names another is not
+  /// taken (MayBeOf), of which the first is warned of. A bus without a session takes all.
+  void SetSession(const std::string& session);
+
   /// Calls `handler` with each message of `channel`, from HandleOnce. Message is an lcm-gen type.
   /// A channel may have several handlers; its counts are kept by the first.
   ///
@@ -92,6 +96,7 @@ class Bus {
   struct Delivery {
     std::string problem;                   ///< Why it could not be decoded; empty if it could.
     std::optional<std::int64_t> sequence;  ///< SequenceOf the message.
+    std::string session;                   ///< SessionOf the message.
     std::function<void()> handle;          ///< Hands the decoded message to the subscriber.
   };
   using Decoder = std::function<Delivery(const void* bytes, std::size_t num_bytes)>;
@@ -100,6 +105,7 @@ class Bus {
                         Queue queue,
                         std::int64_t fingerprint,
                         Decoder decoder);
+  const std::string& session() const;
   void CountPublishFailure(const std::string& channel, const std::string& cause);
 
   std::unique_ptr<Impl> impl_;

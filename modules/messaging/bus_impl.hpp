@@ -13,6 +13,7 @@
 #include "messaging/bus.hpp"
 #include "messaging/encode.hpp"
 #include "messaging/sequence.hpp"
+#include "messaging/session_name.hpp"
 
 namespace voqcal {
 
@@ -47,6 +48,7 @@ void Bus::Subscribe(const std::string& channel,
                      delivery.problem = DecodeMessage(bytes, num_bytes, message.get());
                      if (!delivery.problem.empty()) return delivery;
                      delivery.sequence = SequenceOf(*message);
+                     delivery.session = SessionOf(*message);
                      delivery.handle = [message, &handler] { handler(*message); };
                      return delivery;
                    });
@@ -54,7 +56,7 @@ void Bus::Subscribe(const std::string& channel,
 
 template <typename Message>
 void Bus::Publish(const std::string& channel, const Message& message) {
-  const std::vector<std::uint8_t> bytes = EncodeMessage(message);
+  const std::vector<std::uint8_t> bytes = EncodeMessage(OfSession(message, session()));
   if (bytes.empty()) {
     CountPublishFailure(channel, std::string("cannot encode ") + Message::getTypeName());
     return;

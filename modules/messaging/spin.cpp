@@ -5,6 +5,7 @@
 #include <exception>
 #include <string>
 
+#include "messaging/session_name.hpp"
 #include "messaging/status.hpp"
 
 namespace voqcal {
@@ -93,6 +94,7 @@ bool StopOnSignal::IsRequested() const { return g_is_stop_requested != 0; }
 
 void Spin(Bus& bus, Module& module, const std::string& status_channel, const ProcessArgs& args) {
   const StopOnSignal stop;
+  bus.SetSession(SessionName(args.session_dir.value_or("")));
   Heartbeat heartbeat(bus, module, status_channel, args);
   try {
     RunUntilStopped(bus, module, stop, &heartbeat);

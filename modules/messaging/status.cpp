@@ -1,21 +1,11 @@
 #include "messaging/status.hpp"
 
-#include <cstring>
 #include <utility>
 
-#include <climits>
-#include <unistd.h>
-
+#include "messaging/session_name.hpp"
 #include "messaging/wall_clock.hpp"
 
 namespace voqcal {
-
-std::string SessionName(const std::filesystem::path& session_dir) {
-  char host[HOST_NAME_MAX + 1] = {};
-  if (gethostname(host, HOST_NAME_MAX) != 0) std::strcpy(host, "unknown");
-  if (session_dir.empty()) return std::string(host) + ":";
-  return std::string(host) + ":" + std::filesystem::weakly_canonical(session_dir).string();
-}
 
 StatusPublisher::StatusPublisher(Bus& bus,
                                  std::string channel,

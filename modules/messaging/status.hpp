@@ -12,10 +12,6 @@
 
 namespace voqcal {
 
-/// "host:folder": tells one session from another on one network, also of another host. Without a
-/// folder "host:".
-std::string SessionName(const std::filesystem::path& session_dir);
-
 /// Sends one module's MODULE_STATUS; remembers what numbering and rates need. Spin uses it; a
 /// process with a loop of its own uses it alone.
 class StatusPublisher {

@@ -16,6 +16,7 @@
 #include "core/sensor_network/sensor_pair.hpp"
 #include "messaging/bus.hpp"
 #include "messaging/made_from.hpp"
+#include "messaging/session_name.hpp"
 #include "messaging/wall_clock.hpp"
 #include "result/result_file.hpp"
 #include "rig/rig.hpp"
@@ -173,6 +174,7 @@ void Command(const CommandArgs& given) {
   const std::vector<Rig> pairs = LoadPairs(args.rig);
   const Rig& rig = pairs.front();
   Bus bus(args.lcm_url.value_or(rig.lcm_url));
+  bus.SetSession(SessionName(args.session));
   if (pairs.size() > 1) {
     const std::chrono::duration<double> wait(args.wait_s);
     return CommandRig({args.command, wait, args.session}, pairs, &bus);

@@ -16,6 +16,7 @@
 #include "core/sensor_network/sensor_pair.hpp"
 #include "health/session_watch.hpp"
 #include "messaging/bus.hpp"
+#include "messaging/session_name.hpp"
 #include "messaging/spin.hpp"
 #include "messaging/wall_clock.hpp"
 #include "rig/rig.hpp"

@@ -107,7 +107,7 @@ struct Bus::Impl {
   std::map<std::string, ChannelMemory> memories;
   std::string session;
   std::set<std::string> foreign_sessions;  ///< That were warned of.
-  std::exception_ptr thrown;  ///< By a handler, while C frames were on the stack.
+  std::exception_ptr thrown;               ///< By a handler, while C frames were on the stack.
   std::int64_t num_published = 0;
   std::int64_t num_publish_failures = 0;
 
@@ -138,7 +138,8 @@ void Bus::Impl::Deliver(const Subscription& subscription,
 bool Bus::Impl::IsForeign(const std::string& channel, const std::string& other_session) {
   if (MayBeOf(session, other_session)) return false;
   if (foreign_sessions.insert(other_session).second) {
-    spdlog::warn("{}: what session {} says is not taken; this one is {}", channel, other_session, session);
+    spdlog::warn(
+        "{}: what session {} says is not taken; this one is {}", channel, other_session, session);
   }
   return true;
 }

@@ -15,8 +15,8 @@ struct ChannelContents {
   std::int64_t num_messages = 0;
   std::int64_t first_utime = 0;  ///< When it was received, microseconds since the Unix epoch.
   std::int64_t last_utime = 0;
-  /// Of image_t and pointcloud2_t, by gaps in their sequence numbers; a number that is not above the
-  /// last one is a sender that started anew.
+  /// Of image_t and pointcloud2_t, by gaps in their sequence numbers; a number that is not above
+  /// the last one is a sender that started anew.
   std::int64_t num_lost = 0;
   std::optional<std::int64_t> first_loss_utime{};  ///< Of what came next.
   std::int64_t num_unreadable = 0;                 ///< Of these types, by their own fingerprint.

@@ -36,7 +36,12 @@ const Words& NamesOf(std::string_view field) {
         "timeoffset",
         "scalar_time"}},
       {"return_number",
-       {"return_number", "returnnumber", "return_num", "echo_number", "echo", "scalar_returnnumber"}},
+       {"return_number",
+        "returnnumber",
+        "return_num",
+        "echo_number",
+        "echo",
+        "scalar_returnnumber"}},
   };
   return kNames.at(field);
 }

@@ -1,8 +1,7 @@
 // What the collector makes of boards and commands; its end is in sample_collector_finish_test.cpp.
 
-#include "modules/nodes/sample_collector_fixture.hpp"
-
 #include "files/sha256.hpp"
+#include "modules/nodes/sample_collector_fixture.hpp"
 
 namespace voqcal {
 namespace {

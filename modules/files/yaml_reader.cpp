@@ -64,12 +64,6 @@ std::optional<std::vector<double>> ParseList(const YAML::Node& node) {
   return values;
 }
 
-std::string DefaultText(double value) { return NumberText(value); }
-std::string DefaultText(int value) { return std::to_string(value); }
-std::string DefaultText(std::uint32_t value) { return std::to_string(value); }
-std::string DefaultText(bool value) { return value ? "true" : "false"; }
-std::string DefaultText(const std::string& value) { return value; }
-
 /// "x_rad must ..., is 0.1" as a file with degrees says it: "x_deg must ..., is 5.72958".
 std::string InDegrees(std::string problem) {
   const std::string is = ", is ";
@@ -190,17 +184,19 @@ YamlSection YamlSection::Section(const std::string& key) {
   return {document_, node, PathOf(key), entry->second.line};
 }
 
-YamlSection YamlSection::RequiredSection(const std::string& key, const std::string& remedy) {
+void YamlSection::Require(const std::string& key, const std::string& remedy) {
   if (!Has(key)) document_->AddError(line_, PathOf(key) + " is missing" + remedy);
+}
+
+YamlSection YamlSection::RequiredSection(const std::string& key, const std::string& remedy) {
+  Require(key, remedy);
   return Section(key);
 }
 
 const YAML::Node* YamlSection::Find(const std::string& key) {
   known_.insert(key);
   const auto entry = entries_.find(key);
-  const bool is_given = entry != entries_.end();
-  document_->known_keys_.push_back({PathOf(key), is_given ? entry->second.line : 0, false, ""});
-  if (!is_given) {
+  if (entry == entries_.end()) {
     if (is_required_) document_->AddError(line_, PathOf(key) + " is missing" + remedy_);
     is_complete_ = is_complete_ && !is_required_;
     return nullptr;
@@ -209,15 +205,9 @@ const YAML::Node* YamlSection::Find(const std::string& key) {
   return &entry->second.value;
 }
 
-void YamlSection::NoteDefault(const std::string& text) {
-  document_->known_keys_.back().has_default = true;
-  document_->known_keys_.back().default_text = text;
-}
-
 template <typename Value>
 void YamlSection::ReadScalar(const std::string& key, const char* rule, Value* value) {
   const YAML::Node* node = Find(key);
-  if (!is_required_) NoteDefault(DefaultText(*value));
   if (node == nullptr) return;
   Value parsed{};
   if (!Parse(*node, &parsed)) return AddError(key, rule);

@@ -14,12 +14,12 @@ namespace voqcal {
 /// One YAML file and what is wrong in it. All errors are kept, so that a user sees them at once.
 class YamlDocument {
  public:
-  /// A key that a reader asked for, given or not.
+  /// A key that was read with its meaning (OptionSection), given or not.
   struct KnownKey {
-    std::string path;          ///< "camera.fx_px".
-    int line = 0;              ///< Of its value in the file; 0 if it is not given.
-    bool has_default = false;  ///< False for required keys and for lists.
-    std::string default_text;  ///< Its value if it is not given.
+    std::string path;   ///< "camera.fx_px".
+    std::string value;  ///< As YAML: the file's, or else its default; empty for a section.
+    std::string meaning;
+    bool is_example = false;  ///< `value` is not, or not exactly, what holds without the key.
   };
 
   /// @param name  what errors call the file.
@@ -38,6 +38,7 @@ class YamlDocument {
 
  private:
   friend class YamlSection;
+  friend class OptionSection;
 
   std::string name_;
   YAML::Node root_;
@@ -57,6 +58,9 @@ class YamlSection {
   YamlSection Section(const std::string& key);
   /// The same, and an error if it is not given, which ends with `remedy`.
   YamlSection RequiredSection(const std::string& key, const std::string& remedy = "");
+
+  /// An error if the key is not given, which ends with `remedy`.
+  void Require(const std::string& key, const std::string& remedy);
 
   bool Has(const std::string& key) const { return entries_.count(key) > 0; }
 
@@ -104,6 +108,10 @@ class YamlSection {
   /// thing to do with a section.
   void RefuseUnknownKeys();
 
+ protected:
+  std::string PathOf(const std::string& key) const;
+  YamlDocument& document() { return *document_; }
+
  private:
   struct Entry {
     YAML::Node value;
@@ -113,12 +121,10 @@ class YamlSection {
 
   YamlSection(YamlDocument* document, YAML::Node node, std::string path, int line);
 
-  /// Notes that the key exists; its value, or nullptr if it is not given.
+  /// The key is known from now on; its value, or nullptr if it is not given.
   const YAML::Node* Find(const std::string& key);
   template <typename Value>
   void ReadScalar(const std::string& key, const char* rule, Value* value);
-  void NoteDefault(const std::string& text);
-  std::string PathOf(const std::string& key) const;
   int LineOf(const std::string& key) const;
 
   YamlDocument* document_;

@@ -2,11 +2,11 @@
 
 #include "core/assessment/diagnosis.hpp"
 #include "core/scene/scene_check.hpp"
-#include "files/yaml_reader.hpp"
+#include "files/option_section.hpp"
 
 namespace voqcal {
 
 /// Reads `assessor`, if it is there: options not given keep their values.
-void ReadAssessor(YamlSection* top, SceneCheckOptions* scene_check, DiagnosisOptions* diagnosis);
+void ReadAssessor(OptionSection* top, SceneCheckOptions* scene_check, DiagnosisOptions* diagnosis);
 
 }  // namespace voqcal

@@ -6,20 +6,25 @@
 #include <vector>
 
 #include "core/camera/named_lens.hpp"
-#include "files/transform_yaml.hpp"
 
 namespace voqcal {
 namespace {
 
 constexpr char kLensRemedy[] =
     " (calibrate_lens finds the camera's numbers from a recording of the board)";
+constexpr char kMeaning[] =
+    "its lens; who does not know these numbers has calibrate_lens find them from a recording of "
+    "the board";
 constexpr const char* kPixelKeys[] = {"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
 
-void ReadLens(YamlSection* section, CameraModel* camera) {
+void ReadLens(OptionSection* section, CameraModel* camera) {
   std::string lens_model;
   std::vector<double> distortion;
-  section->ReadRequired("lens_model", &lens_model);
-  section->ReadRequired("distortion", &distortion);
+  section->ReadRequired("lens_model", &lens_model, "equidistant (fisheye), plumb_bob or rational");
+  section->ReadRequired("distortion",
+                        &distortion,
+                        "equidistant: k1 k2 k3 k4; plumb_bob: k1 k2 p1 p2 k3; rational: k1 k2 p1 "
+                        "p2 k3 k4 k5 k6 (OpenCV's orders)");
   if (!section->IsComplete()) return;
   const auto lens = LensByName(lens_model, distortion);
   if (!lens) {
@@ -30,14 +35,15 @@ void ReadLens(YamlSection* section, CameraModel* camera) {
   camera->distortion = lens->distortion;
 }
 
-void ReadIntrinsics(YamlSection* section, CameraModel* camera) {
+void ReadIntrinsics(OptionSection* section, CameraModel* camera) {
   ReadLens(section, camera);
-  section->ReadRequired("width_px", &camera->width_px);
-  section->ReadRequired("height_px", &camera->height_px);
-  section->ReadRequired("fx_px", &camera->fx_px, kLensRemedy);
-  section->ReadRequired("fy_px", &camera->fy_px);
-  section->ReadRequired("cx_px", &camera->cx_px);
-  section->ReadRequired("cy_px", &camera->cy_px);
+  section->ReadRequired("width_px", &camera->width_px, "of the whole image");
+  section->ReadRequired("height_px", &camera->height_px, "the same");
+  section->ReadRequired("fx_px", &camera->fx_px, "focal length", kLensRemedy);
+  section->ReadRequired("fy_px", &camera->fy_px, "the same along y");
+  section->ReadRequired(
+      "cx_px", &camera->cx_px, "principal point; pixel (0, 0) is the centre of the top-left pixel");
+  section->ReadRequired("cy_px", &camera->cy_px, "the same along y");
   if (section->IsComplete()) section->AddProblems(camera->Problems());
 }
 
@@ -49,7 +55,7 @@ bool HasWholeLens(const YamlSection& section) {
 }
 
 // What is left of the keys of a camera whose lens is to be found: sizes and model hold, the rest is
-// as good as not given.
+// as good as not given. ReadIntrinsics says what each means.
 void ReadPartOfLens(YamlSection* section, CameraModel* camera, LensInRig* lens) {
   std::string model = "automatic";
   std::vector<double> distortion;
@@ -71,12 +77,12 @@ void ReadPartOfLens(YamlSection* section, CameraModel* camera, LensInRig* lens) 
 
 }  // namespace
 
-void ReadCamera(YamlSection* top,
+void ReadCamera(OptionSection* top,
                 CameraModel* camera,
                 std::optional<Eigen::Isometry3d>* T_camera_lidar_guess,
                 LensInRig* lens) {
-  YamlSection section =
-      lens != nullptr ? top->Section("camera") : top->RequiredSection("camera", kLensRemedy);
+  OptionSection section = lens != nullptr ? top->Section("camera", kMeaning)
+                                          : top->RequiredSection("camera", kMeaning, kLensRemedy);
   if (!top->Has("camera")) return;
   if (lens == nullptr || HasWholeLens(section)) {
     ReadIntrinsics(&section, camera);
@@ -84,12 +90,12 @@ void ReadCamera(YamlSection* top,
   } else {
     ReadPartOfLens(&section, camera, lens);
   }
-  YamlSection guess = section.Section("T_camera_lidar_guess");
-  if (section.Has("T_camera_lidar_guess")) {
-    T_camera_lidar_guess->emplace(Eigen::Isometry3d::Identity());
-    ReadTransform(&guess, &**T_camera_lidar_guess);
-  }
-  guess.RefuseUnknownKeys();
+  *T_camera_lidar_guess = section.ReadTransform(
+      "T_camera_lidar_guess",
+      "where the lidar is, seen by the camera, within some 5 degrees and 0.2 m, if you know: it "
+      "tells where to look for boards that the lidar alone is unsure of. Without it, the first "
+      "sure ones tell. A camera that looks where the lidar's x points has quaternion_xyzw: [0.5, "
+      "-0.5, 0.5, 0.5]");
   section.RefuseUnknownKeys();
 }
 

@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 
 #include "core/problems.hpp"
+#include "files/option_section.hpp"
 
 namespace voqcal {
 namespace {
@@ -27,15 +28,17 @@ std::vector<std::string> DashboardOptions::Problems() const {
   return problems.lines();
 }
 
-void ReadDashboard(YamlSection* top, DashboardOptions* options) {
-  YamlSection section = top->Section("dashboard");
-  section.Read("address", &options->address);
-  section.Read("port", &options->port);
-  section.Read("host_name", &options->host_name);
-  section.Read("image_rate_hz", &options->image_rate_hz);
-  section.Read("cloud_rate_hz", &options->cloud_rate_hz);
-  section.Read("max_image_width_px", &options->max_image_width_px);
-  section.Read("max_cloud_points", &options->max_cloud_points);
+void ReadDashboard(OptionSection* top, DashboardOptions* options) {
+  OptionSection section = top->Section("dashboard", "the web page of a live session");
+  section.Read("address", &options->address, "IP address to listen at; 0.0.0.0: every network's");
+  section.Read("port", &options->port, "0 to 65535; 0: any that is free");
+  section.Read("host_name", &options->host_name, "a name to open the page by, besides addresses");
+  section.Read("image_rate_hz", &options->image_rate_hz, "images shown a second, at most");
+  section.Read("cloud_rate_hz", &options->cloud_rate_hz, "sweeps shown a second, at most");
+  section.Read("max_image_width_px",
+               &options->max_image_width_px,
+               "larger images are halved until they fit; at least 64");
+  section.Read("max_cloud_points", &options->max_cloud_points, "points shown of a sweep");
   section.AddProblems(options->Problems());
   section.RefuseUnknownKeys();
 }

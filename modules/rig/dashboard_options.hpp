@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "files/yaml_reader.hpp"
-
 namespace voqcal {
+
+class OptionSection;
 
 /// The web page: where it is served, and how much of the sensors it shows.
 struct DashboardOptions {
@@ -22,6 +22,6 @@ struct DashboardOptions {
 };
 
 /// Reads the section `dashboard`.
-void ReadDashboard(YamlSection* top, DashboardOptions* options);
+void ReadDashboard(OptionSection* top, DashboardOptions* options);
 
 }  // namespace voqcal

@@ -4,34 +4,51 @@
 
 namespace voqcal {
 
-void ReadPoseGuide(YamlSection* top, GuidanceOptions* options) {
-  YamlSection section = top->Section("pose_guide");
+void ReadPoseGuide(OptionSection* top, GuidanceOptions* options) {
+  OptionSection section =
+      top->Section("pose_guide", "where to hold the board next, and when it is enough");
   ErrorTolerance* tolerance = &options->enough.tolerance;
-  std::string unit = ToString(tolerance->unit);
-  section.Read("tolerance", &tolerance->tolerance);
-  section.Read("unit", &unit);
-  if (unit != "mm" && unit != "px") section.AddError("unit", "must be mm or px");
-  tolerance->unit = unit == "px" ? ErrorUnit::kPixels : ErrorUnit::kMillimetres;
-  section.Read("min_range_m", &tolerance->min_range_m);
-  section.Read("max_range_m", &tolerance->max_range_m);
-  section.Read("min_samples", &options->enough.min_samples);
+  section.Read("tolerance",
+               &tolerance->tolerance,
+               "largest predicted error (RMS) of a lidar point in the image");
+  section.ReadOneOf<ErrorUnit>("unit",
+                               {{"mm", ErrorUnit::kMillimetres}, {"px", ErrorUnit::kPixels}},
+                               &tolerance->unit,
+                               "of the tolerance; mm are across the camera's ray");
+  section.Read(
+      "min_range_m", &tolerance->min_range_m, "that holds from this range from the camera...");
+  section.Read("max_range_m", &tolerance->max_range_m, "...to this");
+  section.Read("min_samples",
+               &options->enough.min_samples,
+               "fewer are never enough: what they share they cannot show");
   section.AddProblems(options->enough.Problems());
-  YamlSection hold = section.Section("hold");
-  hold.Read("min_distance_m", &options->limits.min_distance_m);
-  hold.Read("max_distance_m", &options->limits.max_distance_m);
-  hold.ReadDegrees("max_incidence_deg", &options->limits.max_incidence_rad);
-  hold.Read("image_margin", &options->limits.image_margin);
-  hold.Read("min_square_px", &options->limits.min_square_px);
-  hold.Read("min_rows", &options->limits.min_rows);
+  OptionSection hold = section.Section("hold", "where the board may be asked for");
+  hold.Read("min_distance_m", &options->limits.min_distance_m, "from the camera...");
+  hold.Read("max_distance_m", &options->limits.max_distance_m, "...to this");
+  hold.ReadDegrees("max_incidence_deg",
+                   &options->limits.max_incidence_rad,
+                   "of either sensor's ray on the board; below 90");
+  hold.Read("image_margin",
+            &options->limits.image_margin,
+            "around the outline, share of the image's shorter side; below 0.5");
+  hold.Read("min_square_px", &options->limits.min_square_px, "smaller squares are not asked for");
+  hold.Read("min_rows", &options->limits.min_rows, "scan lines on the board");
   hold.AddProblems(options->limits.Problems());
   hold.RefuseUnknownKeys();
-  YamlSection sensors = section.Section("sensors");
-  sensors.ReadDegrees("min_elevation_deg", &options->sensors.min_elevation_rad);
-  sensors.ReadDegrees("max_elevation_deg", &options->sensors.max_elevation_rad);
-  sensors.ReadDegrees("max_azimuth_deg", &options->sensors.max_azimuth_rad);
-  sensors.Read("num_rows", &options->sensors.num_rows);
-  sensors.ReadDegrees("column_step_deg", &options->sensors.column_step_rad);
-  sensors.Read("corner_noise_px", &options->sensors.corner_noise_px);
+  OptionSection sensors =
+      section.Section("sensors", "what is expected of a sample: a VLP-16's by default");
+  sensors.ReadDegrees(
+      "min_elevation_deg", &options->sensors.min_elevation_rad, "of the lidar's lowest row...");
+  sensors.ReadDegrees("max_elevation_deg",
+                      &options->sensors.max_elevation_rad,
+                      "...and highest, evenly spaced between");
+  sensors.ReadDegrees(
+      "max_azimuth_deg", &options->sensors.max_azimuth_rad, "to both sides of the lidar's x");
+  sensors.Read("num_rows", &options->sensors.num_rows, "2 to 256");
+  sensors.ReadDegrees(
+      "column_step_deg", &options->sensors.column_step_rad, "between returns of a row");
+  sensors.Read(
+      "corner_noise_px", &options->sensors.corner_noise_px, "1 sigma of a chessboard corner");
   sensors.AddProblems(options->sensors.Problems());
   sensors.RefuseUnknownKeys();
   section.RefuseUnknownKeys();

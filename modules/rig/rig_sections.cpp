@@ -2,14 +2,15 @@
 
 #include <optional>
 #include <stdexcept>
-#include <variant>
+#include <utility>
+#include <vector>
 
-#include "core/camera_detection/calibration_target.hpp"
 #include "core/sensor_network/sensor_pair.hpp"
-#include "files/transform_yaml.hpp"
 #include "rig/assessor_section.hpp"
+#include "rig/board_section.hpp"
 #include "rig/camera_section.hpp"
 #include "rig/channel_section.hpp"
+#include "rig/detector_sections.hpp"
 #include "rig/driver_sections.hpp"
 #include "rig/lcm_url.hpp"
 #include "rig/pose_guide_section.hpp"
@@ -21,159 +22,116 @@
 namespace voqcal {
 namespace {
 
-void ReadLcm(YamlSection* top,
+void ReadLcm(OptionSection* top,
              const std::filesystem::path& rig_path,
              Rig* rig,
              std::string* channel_prefix) {
-  YamlSection section = top->Section("lcm");
-  section.Read("url", &rig->lcm_url);
+  OptionSection section = top->Section("lcm", "the network that all modules share");
+  section.Read("url",
+               &rig->lcm_url,
+               "another port: networks on this one are not heard. ttl=0: nothing leaves the host. "
+               "recv_buf_size "
+               "lets whole images and sweeps arrive (bytes; see net.core.rmem_max)");
   const std::string problem = LcmUrlProblem(rig->lcm_url);
   if (!problem.empty()) section.AddError("url", problem);
-  section.Read("channel_prefix", channel_prefix);
-  ReadPath("types", rig_path, &section, &rig->lcm_types);
+  section.Read("channel_prefix", channel_prefix, "put before each channel, \"FRONT_\"");
+  ReadPath("types",
+           rig_path,
+           &section,
+           &rig->lcm_types,
+           "folder of the .lcm files that define clouds, images or packets of other types than "
+           "bot_core's, for calibrate --bag LOG. What they are is told by their members' names "
+           "(tools/node/README.md)");
   section.RefuseUnknownKeys();
 }
 
-void ReadTargetKey(const TargetKey& key, YamlSection* section, BoardSpec* board) {
-  const auto read = [&](auto field) {
-    if (key.is_required) return section->ReadRequired(key.name, &(board->*field));
-    section->Read(key.name, &(board->*field));
-  };
-  std::visit(read, key.field);
-  if (const auto* count = std::get_if<int BoardSpec::*>(&key.field)) board->*(*count) *= key.times;
-}
-
-void ReadBoard(YamlSection* top, BoardSpec* board) {
-  YamlSection section = top->RequiredSection("board");
-  if (!top->Has("board")) return;
-  section.ReadRequired("width_m", &board->width_m);
-  section.ReadRequired("height_m", &board->height_m);
-  section.Read("pattern_offset_x_m", &board->pattern_offset_x_m);
-  section.Read("pattern_offset_y_m", &board->pattern_offset_y_m);
-  const char* pattern =
-      section.Has("target_type") ? "target_type" : "pattern";  // Kalibr's and ours
-  section.Read(pattern, &board->pattern);
-  const CalibrationTarget* target = FindCalibrationTarget(board->pattern);
-  if (target == nullptr) {
-    return section.AddError(pattern, "must be one of " + CalibrationTargetNames());
-  }
-  for (const TargetKey& key : target->keys) ReadTargetKey(key, &section, board);
-  if (section.IsComplete()) section.AddProblems(BoardProblems(*board));
-  section.RefuseUnknownKeys();
-}
-
-void ReadLidarBoardDetector(YamlSection* top, LidarBoardOptions* options) {
-  YamlSection section = top->Section("lidar_board_detector");
-  section.Read("min_range_m", &options->min_range_m);
-  section.Read("max_range_m", &options->max_range_m);
-  YamlSection box = section.Section("region_of_interest");
-  if (section.Has("region_of_interest")) {
-    RegionOfInterest region;
-    box.ReadRequired("min_lidar_m", &region.min_lidar_m);
-    box.ReadRequired("max_lidar_m", &region.max_lidar_m);
-    options->region_of_interest = region;
-  }
-  box.RefuseUnknownKeys();
-  section.Read("max_corner_sigma_m", &options->max_corner_sigma_m);
-  section.Read("max_bend_m", &options->max_bend_m);
-  section.Read("thickness_m", &options->thickness_m);
-  section.Read("thickness_sigma_m", &options->thickness_sigma_m);
-  section.Read("max_accumulation_s", &options->max_accumulation_s);
-  YamlSection beam = section.Section("beam");
-  beam.Read("spill_m", &options->beam.spill_m);
-  beam.Read("spill_sigma_m", &options->beam.spill_sigma_m);
-  beam.Read("blur_m", &options->beam.blur_m);
-  beam.Read("blur_per_m", &options->beam.blur_per_m);
-  beam.Read("hit_band_m", &options->beam.hit_band_m);
-  beam.Read("line_sigma_m", &options->beam.line_sigma_m);
-  beam.RefuseUnknownKeys();
-  YamlSection background = section.Section("background");
-  background.Read("is_used", &options->background.is_used);
-  background.Read("memory_sweeps", &options->background.memory_sweeps);
-  background.Read("min_step_m", &options->background.min_step_m);
-  background.RefuseUnknownKeys();
+void ReadSampleCollector(OptionSection* top, SamplePickerOptions* options) {
+  OptionSection section =
+      top->Section("sample_collector", "when a pair of sightings becomes a sample");
+  section.Read("max_pair_offset_s",
+               &options->max_pair_offset_s,
+               "time from sweep to image of a pair, at most");
+  section.Read("num_still_frames",
+               &options->num_still_frames,
+               "pairs in a row over which the board must rest");
+  section.Read("max_still_motion_m",
+               &options->max_still_motion_m,
+               "resting: its centre moves less, by the lidar");
+  section.Read("max_still_motion_px",
+               &options->max_still_motion_px,
+               "resting: its corners move less, by the camera");
+  section.Read("min_new_distance_m",
+               &options->min_new_distance_m,
+               "a pose is new if it is this far from every sample's...");
+  section.ReadDegrees("min_new_angle_deg", &options->min_new_angle_rad, "...or turned by this");
+  section.Read(
+      "max_edge_error_m", &options->max_edge_error_m, "largest error of a measured edge length");
+  section.Read("max_candidates",
+               &options->max_candidates,
+               "patches that might be the board, kept with a sample");
   CheckAndClose(*options, &section);
 }
 
-void ReadCameraBoardDetector(YamlSection* top, CameraBoardOptions* options) {
-  YamlSection section = top->Section("camera_board_detector");
-  section.Read("max_reprojection_rms_px", &options->max_reprojection_rms_px);
-  section.ReadDegrees("max_edge_width_deg", &options->max_edge_width_rad);
-  section.Read("max_edge_width_squares", &options->max_edge_width_squares);
-  section.Read("min_square_px", &options->min_square_px);
-  section.Read("min_contrast", &options->min_contrast);
-  section.Read("max_outside_share", &options->max_outside_share);
-  section.Read("max_mirrored_probability", &options->max_mirrored_probability);
-  CheckAndClose(*options, &section);
-}
-
-void ReadSampleCollector(YamlSection* top, SamplePickerOptions* options) {
-  YamlSection section = top->Section("sample_collector");
-  section.Read("max_pair_offset_s", &options->max_pair_offset_s);
-  section.Read("num_still_frames", &options->num_still_frames);
-  section.Read("max_still_motion_m", &options->max_still_motion_m);
-  section.Read("max_still_motion_px", &options->max_still_motion_px);
-  section.Read("min_new_distance_m", &options->min_new_distance_m);
-  section.ReadDegrees("min_new_angle_deg", &options->min_new_angle_rad);
-  section.Read("max_edge_error_m", &options->max_edge_error_m);
-  section.Read("max_candidates", &options->max_candidates);
-  CheckAndClose(*options, &section);
-}
-
-void ReadVoqSelector(YamlSection* top, SelectionOptions* options, ConsistencyOptions* consistency) {
-  YamlSection section = top->Section("voq_selector");
-  std::string criterion = ToString(options->criterion);
-  section.Read("criterion", &criterion);
-  if (const auto known = SelectionCriterionFromString(criterion)) {
-    options->criterion = *known;
-  } else {
-    std::string names;
-    for (const SelectionCriterion each : AllSelectionCriteria()) {
-      names += (names.empty() ? "" : ", ") + ToString(each);
-    }
-    section.AddError("criterion", "must be one of " + names);
+void ReadVoqSelector(OptionSection* top,
+                     SelectionOptions* options,
+                     ConsistencyOptions* consistency) {
+  OptionSection section = top->Section("voq_selector", "how sets of poses are chosen");
+  std::vector<std::pair<std::string, SelectionCriterion>> criteria;
+  for (const SelectionCriterion each : AllSelectionCriteria()) {
+    criteria.emplace_back(ToString(each), each);
   }
-  section.Read("seed", &options->seed);
-  section.Read("num_sets", &options->num_sets);
-  YamlSection pairs = section.Section("consistency");
-  pairs.Read("max_distance_m", &consistency->max_distance_m);
-  pairs.ReadDegrees("max_angle_deg", &consistency->max_angle_rad);
+  section.ReadOneOf("criterion",
+                    criteria,
+                    &options->criterion,
+                    "what is chosen by (voq: as published; all_poses: one set of all)");
+  section.Read("seed", &options->seed, "of criterion random");
+  section.Read("num_sets", &options->num_sets, "sets of three poses");
+  OptionSection pairs =
+      section.Section("consistency", "pairs of poses look alike to both sensors, or one is wrong");
+  pairs.Read("max_distance_m",
+             &consistency->max_distance_m,
+             "distance between two centres, lidar against camera");
+  pairs.ReadDegrees("max_angle_deg",
+                    &consistency->max_angle_rad,
+                    "angle between two normals, lidar against camera");
   CheckAndClose(*consistency, &pairs);
   CheckAndClose(*options, &section);
 }
 
-void ReadExtrinsicEstimator(YamlSection* top,
+void ReadExtrinsicEstimator(OptionSection* top,
                             SetExtrinsicOptions* options,
                             AverageOptions* average) {
-  YamlSection section = top->Section("extrinsic_estimator");
-  section.ReadDegrees("sigma_normal_deg", &options->sigma_normal_rad);
-  section.Read("sigma_centre_m", &options->sigma_centre_m);
-  section.Read("sigma_centre_px", &options->sigma_centre_px);
-  section.Read("max_iterations", &options->max_iterations);
-  section.Read("max_z_score", &average->max_z_score);
+  OptionSection section =
+      top->Section("extrinsic_estimator", "the extrinsic of each set, then their mean");
+  section.ReadDegrees("sigma_normal_deg", &options->sigma_normal_rad, "noise of a lidar normal");
+  section.Read(
+      "sigma_centre_m", &options->sigma_centre_m, "noise of a lidar centre, mostly in range");
+  section.Read("sigma_centre_px",
+               &options->sigma_centre_px,
+               "noise of a lidar centre across the view, in pixels");
+  section.Read("max_iterations", &options->max_iterations, "of one set's fit");
+  section.Read(
+      "max_z_score", &average->max_z_score, "sets beyond this many standard deviations go");
   section.AddProblems(average->Problems());
   CheckAndClose(*options, &section);
 }
 
-void ReadExtrinsicMonitor(YamlSection* top,
+void ReadExtrinsicMonitor(OptionSection* top,
                           const std::filesystem::path& rig_path,
                           ExtrinsicMonitorOptions* options) {
-  YamlSection section = top->Section("extrinsic_monitor");
-  ReadPath("extrinsic", rig_path, &section, &options->extrinsic);
-  section.Read("max_apart_s", &options->window.max_apart_s);
-  section.Read("every_s", &options->window.every_s);
-  section.Read("window_s", &options->window.window_s);
+  OptionSection section = top->Section(
+      "extrinsic_monitor", "watches an extrinsic after the calibration, without a board");
+  ReadPath("extrinsic", rig_path, &section, &options->extrinsic, "a result; \"\": the session's");
+  section.Read("max_apart_s", &options->window.max_apart_s, "between a sweep and its image");
+  section.Read("every_s", &options->window.every_s, "at least so long between two scenes");
+  section.Read("window_s", &options->window.window_s, "the scenes of so long are judged together");
   CheckAndClose(options->window, &section);
 }
 
 /// Roughly where a sensor is on its rig: p_rig = T_rig_sensor * p_sensor.
 std::optional<Eigen::Isometry3d> ReadMount(SensorEntry* entry, const char* key) {
-  YamlSection section = entry->section.Section(key);
-  if (!entry->section.Has(key)) return {};
-  Eigen::Isometry3d T_rig_sensor = Eigen::Isometry3d::Identity();
-  ReadTransform(&section, &T_rig_sensor);
-  section.RefuseUnknownKeys();
-  return T_rig_sensor;
+  return entry->section.ReadTransform(
+      key, "roughly where it is on the rig: tells where to look for unsure boards");
 }
 
 /// Where the two are on the rig tells where they are to each other.
@@ -181,7 +139,7 @@ void ReadMounts(const PairOfEntries& pair, Rig* rig) {
   const auto T_rig_lidar = ReadMount(pair.lidar, "T_rig_lidar_guess");
   const auto T_rig_camera = ReadMount(pair.camera, "T_rig_camera_guess");
   if (rig->T_camera_lidar_guess) {
-    YamlSection camera = pair.camera->section.Section("camera");
+    YamlSection camera = pair.camera->section.Peek("camera");
     camera.AddError("T_camera_lidar_guess",
                     "is of one lidar: give lidars." + pair.lidar->name +
                         ".T_rig_lidar_guess and cameras." + pair.camera->name +
@@ -203,10 +161,10 @@ void ReadMounts(const PairOfEntries& pair, Rig* rig) {
 /// A detector's options: the sensor's own, or else those that all of its kind share. Both are
 /// checked.
 template <typename Options>
-void ReadDetector(void (*read)(YamlSection*, Options*),
+void ReadDetector(void (*read)(OptionSection*, Options*),
                   const char* key,
-                  YamlSection* sensor,
-                  YamlSection* top,
+                  OptionSection* sensor,
+                  OptionSection* top,
                   Options* options) {
   Options own = *options;
   read(top, options);
@@ -217,14 +175,15 @@ void ReadDetector(void (*read)(YamlSection*, Options*),
 
 /// What belongs to one lidar or one camera, from where each has its sections.
 void ReadSensors(const std::filesystem::path& rig_path,
-                 YamlSection* top,
-                 YamlSection* lidar,
-                 YamlSection* camera,
+                 OptionSection* top,
+                 OptionSection* lidar,
+                 OptionSection* camera,
                  Rig* rig,
                  LensInRig* lens) {
   ReadCamera(camera, &rig->camera, &rig->T_camera_lidar_guess, lens);
   ReadLidarDriver(lidar, rig_path, &rig->lidar_driver, &rig->lidar_sensor);
   ReadCameraDriver(camera, rig_path, &rig->camera_driver);
+  ReadSimulation(top, &rig->simulation);
   ReadDetector(
       ReadLidarBoardDetector, "lidar_board_detector", lidar, top, &rig->lidar_board_detector);
   ReadDetector(
@@ -232,11 +191,11 @@ void ReadSensors(const std::filesystem::path& rig_path,
 }
 
 /// Where the path names none, the file may: a session's copy says which were meant.
-RigPlace PlaceInFile(const RigPlace& place, PairLine line, YamlSection* top) {
+RigPlace PlaceInFile(const RigPlace& place, PairLine line, OptionSection* top) {
   std::string names;
   std::string pair;
-  top->Read("sensors", &names);
-  top->Read("pair", &pair);
+  top->Read("sensors", &names, "those that are meant, if the path names none: front,left,right");
+  top->Read("pair", &pair, "the same for who takes one pair alone: front,left");
   if (!names.empty() && !pair.empty()) top->AddError("pair", "must not stand beside sensors");
   if (line == PairLine::kChooses && !pair.empty()) names = pair;
   return place.names.empty() && !names.empty()
@@ -248,7 +207,7 @@ RigPlace PlaceInFile(const RigPlace& place, PairLine line, YamlSection* top) {
 void ReadNamedSensors(const RigPlace& place,
                       SensorChoice choice,
                       const std::string& channel_prefix,
-                      YamlSection* top,
+                      OptionSection* top,
                       SensorEntries* entries,
                       Rig* rig,
                       LensInRig* lens) {
@@ -264,8 +223,8 @@ void ReadNamedSensors(const RigPlace& place,
   if (lens == nullptr) {
     ReadSimulatedRig(top, pair, entries, rig);
   } else {
-    pair.camera->section.Section("simulation");
-    pair.lidar->section.Section("simulation");
+    pair.camera->section.Peek("simulation");
+    pair.lidar->section.Peek("simulation");
   }
   pair.lidar->section.RefuseUnknownKeys();
   pair.camera->section.RefuseUnknownKeys();
@@ -274,7 +233,7 @@ void ReadNamedSensors(const RigPlace& place,
 }  // namespace
 
 RigSensors ReadRigSensors(PairLine line, RigPlace* place, YamlDocument* document) {
-  YamlSection top(document);
+  OptionSection top(document);
   const SensorEntries entries = ReadSensorEntries(&top);
   document->ThrowIfWrong();
   *place = PlaceInFile(*place, line, &top);
@@ -285,21 +244,20 @@ RigSensors ReadRigSensors(PairLine line, RigPlace* place, YamlDocument* document
 
 void ReadRigSections(
     const RigPlace& place, YamlDocument* document, Rig* rig, LensInRig* lens, SensorChoice choice) {
-  YamlSection top(document);
+  OptionSection top(document);
   SensorEntries entries = ReadSensorEntries(&top);
   document->ThrowIfWrong();  // before any of them is chosen
   std::string channel_prefix;
-  top.ReadRequired("rig", &rig->rig_name);
+  top.ReadRequired("rig", &rig->rig_name, "name of the rig, as reports show it");
   rig->name = rig->rig_name;
   ReadLcm(&top, place.file, rig, &channel_prefix);
   ReadBoard(&top, &rig->board);
-  ReadSimulation(&top, &rig->simulation);
   if (entries.AreGiven()) {
     ReadNamedSensors(place, choice, channel_prefix, &top, &entries, rig, lens);
   } else {
     RequireNames(place, {});
-    ReadChannels(&top, channel_prefix, &rig->channels);
     ReadSensors(place.file, &top, &top, &top, rig, lens);
+    ReadChannels(&top, channel_prefix, &rig->channels);
   }
   ReadSampleCollector(&top, &rig->sample_collector);
   ReadVoqSelector(&top, &rig->voq_selector, &rig->consistency);

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "files/yaml_reader.hpp"
+#include "files/option_section.hpp"
 
 namespace voqcal {
 
@@ -17,16 +17,17 @@ inline std::filesystem::path Beside(const std::filesystem::path& rig_path,
 /// Such a path under `key`.
 inline void ReadPath(const std::string& key,
                      const std::filesystem::path& rig_path,
-                     YamlSection* section,
-                     std::filesystem::path* path) {
+                     OptionSection* section,
+                     std::filesystem::path* path,
+                     const std::string& meaning) {
   std::string text;
-  section->Read(key, &text);
+  section->Read(key, &text, meaning);
   *path = Beside(rig_path, text);
 }
 
 /// Reads nothing more of a section: what is left over or does not fit together becomes an error.
 template <typename Options>
-void CheckAndClose(const Options& options, YamlSection* section) {
+void CheckAndClose(const Options& options, OptionSection* section) {
   section->AddProblems(options.Problems());
   section->RefuseUnknownKeys();
 }

@@ -28,11 +28,12 @@ bool IsWordOfYaml(std::string name) {
   return kWords.count(name) != 0;
 }
 
-std::vector<SensorEntry> ReadKind(YamlSection* top,
+std::vector<SensorEntry> ReadKind(OptionSection* top,
                                   const std::string& kind,
                                   std::set<std::string>* taken) {
   std::vector<SensorEntry> entries;
-  YamlSection section = top->Section(kind);
+  OptionSection section =
+      top->Section(kind, "each under a name of its own, with the sections that are of it");
   if (section.keys().empty()) top->AddError(kind, "must have a section for each, under its name");
   for (const std::string& name : section.keys()) {
     if (!IsName(name)) {
@@ -43,13 +44,13 @@ std::vector<SensorEntry> ReadKind(YamlSection* top,
     if (!taken->insert(name).second) {
       section.AddError(name, "must be named unlike every other sensor");
     }
-    entries.push_back({name, section.Section(name)});
+    entries.push_back({name, section.Section(name, "one of the " + kind)});
   }
   return entries;
 }
 
 /// Pairs go by their names: those of two must not be the same.
-void RefuseSameNames(const SensorEntries& entries, YamlSection* top) {
+void RefuseSameNames(const SensorEntries& entries, OptionSection* top) {
   std::map<std::string, std::string> words;  // by name
   for (const SensorEntry& lidar : entries.lidars) {
     for (const SensorEntry& camera : entries.cameras) {
@@ -114,11 +115,11 @@ std::string HowToName(const RigPlace& place, SensorChoice choice, const RigSenso
 
 RigSensors SensorEntries::Names() const { return {NamesOf(lidars), NamesOf(cameras)}; }
 
-SensorEntries ReadSensorEntries(YamlSection* top) {
+SensorEntries ReadSensorEntries(OptionSection* top) {
   SensorEntries entries;
   if (!top->Has("lidars") && !top->Has("cameras")) {
-    top->Section("lidars");  // known keys
-    top->Section("cameras");
+    top->Peek("lidars");  // known keys
+    top->Peek("cameras");
     return entries;
   }
   std::set<std::string> taken;
@@ -131,7 +132,7 @@ SensorEntries ReadSensorEntries(YamlSection* top) {
                     "must be in a sensor's own section, " + kind +
                         ".NAME, beside lidars and "
                         "cameras");
-      top->Section(key);
+      top->Peek(key);
     }
   };
   refuse("lidar_driver", "lidars");

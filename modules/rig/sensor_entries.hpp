@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "files/yaml_reader.hpp"
+#include "files/option_section.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {
@@ -11,7 +11,7 @@ namespace voqcal {
 /// One sensor of a rig file that has them by name: under `lidars` or `cameras`.
 struct SensorEntry {
   std::string name;
-  YamlSection section;
+  OptionSection section;
 };
 
 /// All of them, in the file's order; none in a file of one lidar and one camera.
@@ -25,7 +25,7 @@ struct SensorEntries {
 
 /// Names that are none, a sensor twice, two pairs of one name, and the sections of a file of one
 /// lidar and one camera beside them become errors of the document.
-SensorEntries ReadSensorEntries(YamlSection* top);
+SensorEntries ReadSensorEntries(OptionSection* top);
 
 /// @throws std::runtime_error with one line if `place` names a sensor that is none of these.
 void RequireNames(const RigPlace& place, const RigSensors& sensors);

@@ -276,6 +276,14 @@ TEST_F(BadInput, OutputThatCannotBeWrittenIsNamedWithTheCause) {
   }
 }
 
+TEST_F(BadInput, CheckRigPrintsARigFileThatItTakes) {
+  const test::Outcome printed = test::Run({test::Program("check_rig"), "--print-defaults"});
+  EXPECT_EQ(printed.status, 0) << printed.err;
+  const std::string rig = folder_.Write("default.yaml", printed.out);
+  const test::Outcome outcome = test::Run({test::Program("check_rig"), rig});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 TEST_F(BadInput, RigFileThatCanHardlyBeRight) {
   folder_.Write("rig.yaml", test::Replaced(kRigText, "width_m: 0.6", "width_m: 600"));
   const test::Outcome outcome = test::Run({test::Program("check_rig"), rig_});

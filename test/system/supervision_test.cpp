@@ -113,10 +113,11 @@ TEST_F(Supervision, AFolderOfAnotherRigIsRefused) {
 }
 
 TEST_F(Supervision, UpSaysThatADriverEndedAtOnce) {
-  const std::string vlp16 = test::Replaced(test::ShortRigText(),
-                                           "source: simulator               # default folder\n",
-                                           "source: vlp16\n");
-  rig_ = folder_.Write("rig.yaml", test::Replaced(vlp16, "pcap: \"\"", "pcap: no_such.pcap"));
+  rig_ = folder_.Write(
+      "rig.yaml",
+      test::Replaced(test::ShortRigText(),
+                     "lidar_driver:\n  source: simulator\n",
+                     "lidar_driver:\n  source: vlp16\n  sensor: {pcap: no_such.pcap}\n"));
   const test::Outcome up = Up({"--only", "lidar_driver"});
   EXPECT_EQ(up.status, 1) << up.out;
   EXPECT_THAT(up.err, AllOf(HasSubstr("lidar_driver ended at once"), HasSubstr("no_such.pcap")));

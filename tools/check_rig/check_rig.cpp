@@ -14,6 +14,7 @@
 #include "core/camera_detection/calibration_target.hpp"
 #include "core/format.hpp"
 #include "health/session_programs.hpp"
+#include "rig/default_rig.hpp"
 #include "rig/frame_pairing.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_doubts.hpp"
@@ -183,6 +184,13 @@ int main(int argc, char** argv) {
   bool is_programs_only = false;
   bool may_lack_lens = false;
   app.add_option("rig", path, "The rig file (YAML)")->required();
+  app.add_flag_callback(
+      "--print-defaults",
+      [] {
+        std::fputs(voqcal::DefaultRigText().c_str(), stdout);
+        throw CLI::Success();
+      },
+      "Print a rig file that explains every key, with its default; no rig file is needed");
   app.add_flag("--name", is_name_only, "Print just the rig's name, for scripts");
   app.add_flag("--programs",
                is_programs_only,

@@ -108,7 +108,7 @@ std::string RigDraft::MissingOfBoard() const {
 
 std::string RigDraft::Text() const {
   std::ostringstream text;
-  text << "# Drafted by draft_rig; config/rigs/simulated_vlp16.yaml explains every option.\n"
+  text << "# Drafted by draft_rig; check_rig --print-defaults explains every key.\n"
        << "rig: " << std::quoted(name_) << '\n';
   for (const auto& [name, section] : sections_) {
     text << '\n' << name << ":";

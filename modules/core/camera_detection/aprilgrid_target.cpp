@@ -108,16 +108,17 @@ PrintedPattern Print(const BoardSpec& board) {
 }  // namespace
 
 const CalibrationTarget& AprilGrid() {
-  static const CalibrationTarget kAprilGrid{"aprilgrid",
-                                            {{"tagCols", &BoardSpec::num_corners_x, true, 2},
-                                             {"tagRows", &BoardSpec::num_corners_y, true, 2},
-                                             {"tagSize", &BoardSpec::square_m},
-                                             {"tagSpacing", &BoardSpec::gap_squares}},
-                                            Problems,
-                                            HasHalfTurn,
-                                            Reach,
-                                            FindCorners,
-                                            Print};
+  static const CalibrationTarget kAprilGrid{
+      "aprilgrid",
+      {{"tagCols", &BoardSpec::num_corners_x, "tags along the width", true, 2},
+       {"tagRows", &BoardSpec::num_corners_y, "tags along the height", true, 2},
+       {"tagSize", &BoardSpec::square_m, "side of a tag, metres"},
+       {"tagSpacing", &BoardSpec::gap_squares, "gap between tags, of a tag's side"}},
+      Problems,
+      HasHalfTurn,
+      Reach,
+      FindCorners,
+      Print};
   return kAprilGrid;
 }
 

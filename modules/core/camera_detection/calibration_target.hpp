@@ -18,6 +18,7 @@ namespace voqcal {
 struct TargetKey {
   const char* name;
   std::variant<double BoardSpec::*, int BoardSpec::*, std::string BoardSpec::*> field;
+  const char* meaning;
   bool is_required = true;
   int times = 1;  ///< An int of the file counts so many in the field.
 };

@@ -67,17 +67,8 @@ PrintedPattern Print(const BoardSpec& board) {
 }  // namespace
 
 const CalibrationTarget& Charuco() {
-  static const CalibrationTarget kCharuco{"charuco",
-                                          {{"square_m", &BoardSpec::square_m},
-                                           {"num_corners_x", &BoardSpec::num_corners_x},
-                                           {"num_corners_y", &BoardSpec::num_corners_y},
-                                           {"dictionary", &BoardSpec::dictionary, false},
-                                           {"marker_m", &BoardSpec::marker_m, false}},
-                                          Problems,
-                                          HasHalfTurn,
-                                          Reach,
-                                          FindCharucoCorners,
-                                          Print};
+  static const CalibrationTarget kCharuco{
+      "charuco", Chessboard().keys, Problems, HasHalfTurn, Reach, FindCharucoCorners, Print};
   return kCharuco;
 }
 

@@ -32,12 +32,15 @@ PrintedPattern Print(const BoardSpec& board) {
 const CalibrationTarget& Chessboard() {
   static const CalibrationTarget kChessboard{
       "chessboard",
-      {{"square_m", &BoardSpec::square_m},
-       {"num_corners_x", &BoardSpec::num_corners_x},
-       {"num_corners_y", &BoardSpec::num_corners_y},
+      {{"square_m", &BoardSpec::square_m, "side of one square: measure several at once"},
+       {"num_corners_x", &BoardSpec::num_corners_x, "inner corners along the width; at least 3"},
+       {"num_corners_y", &BoardSpec::num_corners_y, "inner corners along the height; at least 3"},
        // ChArUco's, without effect: a rig file may keep them.
-       {"dictionary", &BoardSpec::dictionary, false},
-       {"marker_m", &BoardSpec::marker_m, false}},
+       {"dictionary",
+        &BoardSpec::dictionary,
+        "of charuco: 4x4_50 to 7x7_1000, apriltag_36h11, ...",
+        false},
+       {"marker_m", &BoardSpec::marker_m, "of charuco: side of a marker", false}},
       Problems,
       HasHalfTurn,
       Reach,

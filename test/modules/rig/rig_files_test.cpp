@@ -2,64 +2,80 @@
 #include <cmath>
 #include <sstream>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/units.hpp"
 #include "files/atomic_file.hpp"
-#include "files/number_text.hpp"
-#include "files/yaml_reader.hpp"
+#include "files/option_section.hpp"
+#include "rig/default_rig.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_sections.hpp"
 
 namespace voqcal {
 namespace {
 
+using testing::EndsWith;
+
 const std::filesystem::path kRigs = std::filesystem::path(VOQCAL_SOURCE_DIR) / "config/rigs";
 
-std::vector<std::string> LinesOf(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-/// What follows the last "default " of a line; nothing if there is none.
-std::string StatedDefault(const std::string& line) {
-  const std::size_t at = line.rfind("default ");
-  if (at == std::string::npos) return "";
-  const std::string text = line.substr(at + std::string("default ").size());
-  return text == "\"\"" ? "" : text;
-}
-
-/// Equal as text, or as numbers to the four digits that a comment shows.
-bool IsSame(const std::string& stated, const std::string& actual) {
-  double a = 0;
-  double b = 0;
-  const bool are_numbers = ParseNumber(stated, &a) && ParseNumber(actual, &b);
-  return are_numbers ? std::abs(a - b) <= 1e-3 * std::abs(b) : stated == actual;
-}
-
-TEST(SimulatedRig, ListsEveryOptionWithItsTrueDefault) {
-  const auto path = kRigs / "simulated_vlp16.yaml";
-  const std::string text = ReadWholeFile(path);
-  const std::vector<std::string> lines = LinesOf(text);
-  YamlDocument document(path.string(), text);
-  Rig rig;
-  ReadRigSections({path, {}}, &document, &rig);
+/// What is known of a rig file's keys, whose pair of sensors `place` names.
+std::vector<YamlDocument::KnownKey> KnownKeys(const RigPlace& place,
+                                              const std::string& text,
+                                              Rig* rig) {
+  YamlDocument document(place.file.string(), text);
+  ReadRigSections(place, &document, rig);
   document.ThrowIfWrong();
-  EXPECT_GT(document.known_keys().size(), 60U);
-  for (const YamlDocument::KnownKey& key : document.known_keys()) {
-    if (key.line == 0) {
-      ADD_FAILURE() << key.path << " is not in the file";
-      continue;
-    }
-    const std::string& line = lines.at(static_cast<std::size_t>(key.line - 1));
-    const bool has_default = line.rfind("default ") != std::string::npos;
-    EXPECT_EQ(has_default, key.has_default) << key.path;
-    if (has_default) {
-      EXPECT_TRUE(IsSame(StatedDefault(line), key.default_text))
-          << key.path << " defaults to " << key.default_text << ", but the file says: " << line;
+  return document.known_keys();
+}
+
+TEST(ExampleRigs, HaveKeysWithMeaningsAlone) {
+  for (const char* name :
+       {"simulated_vlp16", "acfr_vlp16", "several_sensors", "simulated_several"}) {
+    for (const auto& path : PairsOfRig(kRigs / (std::string(name) + ".yaml"))) {
+      const RigPlace place = PlaceOfRig(path);
+      Rig rig;
+      const auto keys = KnownKeys(place, ReadWholeFile(place.file), &rig);
+      EXPECT_GT(keys.size(), 200U);
+      for (const auto& key : keys) EXPECT_FALSE(key.meaning.empty()) << name << ": " << key.path;
     }
   }
+}
+
+// What it prints for itself is what it was printed from: every key is read as it was shown.
+TEST(DefaultRig, ReadsAsItWasPrinted) {
+  const std::string text = DefaultRigText();
+  Rig rig;
+  EXPECT_THAT(text, EndsWith(DocumentedYaml(KnownKeys({"rig.yaml", {}}, text, &rig))));
+  EXPECT_EQ(rig.rig_name, "my_rig");
+  EXPECT_EQ(rig.lcm_url, kDefaultLcmUrl);
+  EXPECT_EQ(rig.extrinsic_estimator.sigma_normal_rad, SetExtrinsicOptions().sigma_normal_rad);
+  EXPECT_EQ(rig.pose_guide.sensors.max_azimuth_rad, SensorExpectation().max_azimuth_rad);
+  EXPECT_FALSE(rig.T_camera_lidar_guess);
+  EXPECT_FALSE(rig.lidar_board_detector.region_of_interest);
+}
+
+TEST(DefaultRig, TakesWhatTheUserWritesInstead) {
+  std::string text = DefaultRigText();
+  const auto set = [&text](const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  };
+  set("\n  num_sets: 50", "\n  num_sets: 51");
+  set("\n  # min_new_angle_deg: 2.865", "\n  min_new_angle_deg: 90");
+  set("\n  # region_of_interest:", "\n  region_of_interest:");
+  set("\n  # T_camera_lidar_guess:", "\n  T_camera_lidar_guess:");
+  Rig rig;
+  KnownKeys({"rig.yaml", {}}, text, &rig);
+  EXPECT_EQ(rig.voq_selector.num_sets, 51);
+  EXPECT_EQ(rig.sample_collector.min_new_angle_rad, 90 * kRadPerDeg);
+  EXPECT_TRUE(rig.lidar_board_detector.region_of_interest);
+  EXPECT_TRUE(rig.T_camera_lidar_guess);
+}
+
+TEST(DefaultRig, FitsIntoAHundredColumns) {
+  std::istringstream lines(DefaultRigText());
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
 }
 
 TEST(SimulatedRig, LooksForwardNearTheLidar) {

@@ -257,7 +257,7 @@ test("stamps of another clock: log times, said; forbidden if asked", options, as
 test("sweeps end where the rig file says", options, async () => {
   const rigs = new URL("../../../config/rigs/simulated_vlp16.yaml", import.meta.url);
   const text = readFileSync(rigs, "utf8");
-  const asSensor = text.replace("source: simulator ", "source: velodyne_vlp16 ").replace(/split_azimuth_deg: \d+/, "split_azimuth_deg: 90");
+  const asSensor = text.replace("source: simulator", "source: velodyne_vlp16\n  sensor: {split_azimuth_deg: 90}");
   writeFileSync(path("rig.yaml"), asSensor);
   await writeMcap(path("e.mcap"), withImages(scansOf(vlp16Packets(), "velodyne_msgs/VelodyneScan")));
   const { sweeps } = imported(path("e.mcap"), "--rig", path("rig.yaml"));

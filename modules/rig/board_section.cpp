@@ -1,0 +1,61 @@
+#include "rig/board_section.hpp"
+
+#include <variant>
+
+#include "core/camera_detection/calibration_target.hpp"
+
+namespace voqcal {
+namespace {
+
+constexpr char kOffsetMeaning[] =
+    "where the middle of the inner corners lies, from the middle of the plate. Hold the plate "
+    "upright before you, printed face towards you, height_m upwards:\n"
+    "      width_m                    chessboard right of the plate's middle: "
+    "pattern_offset_x_m > 0\n"
+    "  +-----------------+            ... left of it: pattern_offset_x_m < 0\n"
+    "  |         +-----+ |            ... above it:   pattern_offset_y_m > 0\n"
+    "  |    +    |chess| | height_m   ... below it:   pattern_offset_y_m < 0\n"
+    "  |         +-----+ |            As drawn: pattern_offset_x_m > 0, pattern_offset_y_m: 0.\n"
+    "  +-----------------+\n"
+    "Which way up is upright? num_corners_x + num_corners_y odd: the one with a dark square at the "
+    "lower left of the chessboard, whichever way the board is held later. Even: both ways look "
+    "alike; hold the board this way up in every pose. calibrate says so if a sign must be the "
+    "other one.";
+
+void ReadTargetKey(const TargetKey& key, OptionSection* section, BoardSpec* board) {
+  const auto read = [&](auto field) {
+    if (key.is_required) return section->ReadRequired(key.name, &(board->*field), key.meaning);
+    section->Read(key.name, &(board->*field), key.meaning);
+  };
+  std::visit(read, key.field);
+  if (const auto* count = std::get_if<int BoardSpec::*>(&key.field)) board->*(*count) *= key.times;
+}
+
+}  // namespace
+
+void ReadBoard(OptionSection* top, BoardSpec* board) {
+  OptionSection section =
+      top->RequiredSection("board", "metres; x runs along the width, y along the height");
+  if (!top->Has("board")) return;
+  section.ReadRequired(
+      "width_m", &board->width_m, "edge of the whole plate along x, without its stand");
+  section.ReadRequired("height_m", &board->height_m, "its other edge, along y");
+  section.Read("pattern_offset_x_m", &board->pattern_offset_x_m, kOffsetMeaning);
+  section.Read("pattern_offset_y_m", &board->pattern_offset_y_m, "the same upwards: see above");
+  const char* pattern =
+      section.Has("target_type") ? "target_type" : "pattern";  // Kalibr's and ours
+  section.Read(pattern,
+               &board->pattern,
+               "what is printed on it: " + CalibrationTargetNames() +
+                   " (as OpenCV 4.6 prints it, y up; an AprilGrid by the lines of Kalibr's own "
+                   "file: modules/camera_board_detector/README.md)");
+  const CalibrationTarget* target = FindCalibrationTarget(board->pattern);
+  if (target == nullptr) {
+    return section.AddError(pattern, "must be one of " + CalibrationTargetNames());
+  }
+  for (const TargetKey& key : target->keys) ReadTargetKey(key, &section, board);
+  if (section.IsComplete()) section.AddProblems(BoardProblems(*board));
+  section.RefuseUnknownKeys();
+}
+
+}  // namespace voqcal

@@ -1,6 +1,10 @@
 #include "files/option_section.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -30,7 +34,14 @@ std::string Listed(const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::string YamlText(double value) { return NumberText(value); }
+/// People read 0.0005 more easily than 5e-04.
+std::string YamlText(double value) {
+  if (std::abs(value) < 1e-6 || std::abs(value) >= 1) return NumberText(value);
+  std::array<char, 32> text{};
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed).ptr;
+  return {text.data(), end};
+}
 std::string YamlText(int value) { return std::to_string(value); }
 std::string YamlText(std::uint32_t value) { return std::to_string(value); }
 std::string YamlText(bool value) { return value ? "true" : "false"; }
@@ -63,7 +74,7 @@ void OptionSection::ReadDegrees(const std::string& key,
   double shown_deg = 0;
   ParseNumber(Format("%.4g", value_deg), &shown_deg);
   const bool is_rounded = shown_deg != value_deg && shown_deg * kRadPerDeg != *value_rad;
-  Describe(key, NumberText(shown_deg), meaning, is_rounded);
+  Describe(key, YamlText(shown_deg), meaning, is_rounded);
 }
 
 std::optional<Eigen::Isometry3d> OptionSection::ReadTransform(const std::string& key,

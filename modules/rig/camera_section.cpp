@@ -13,8 +13,7 @@ namespace {
 constexpr char kLensRemedy[] =
     " (calibrate_lens finds the camera's numbers from a recording of the board)";
 constexpr char kMeaning[] =
-    "its lens; who does not know these numbers has calibrate_lens find them from a recording of "
-    "the board";
+    "its lens; calibrate_lens finds these numbers from a recording of the board";
 constexpr const char* kPixelKeys[] = {"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
 
 void ReadLens(OptionSection* section, CameraModel* camera) {

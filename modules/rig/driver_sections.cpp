@@ -26,13 +26,12 @@ void ReadFrameOptions(const std::filesystem::path& rig_path,
   section->Read("is_repeating",
                 &options->is_repeating,
                 "for source folder: starts again after the last file");
-  section->ReadOneOf<bool>(
-      "frames_by",
-      {{"names", false}, {"order", true}},
-      &options->is_by_order,
-      "for source folder: a cloud and an image belong together if their names "
-      "have the same number or time, or if they are the first, the second, ... "
-      "of both folders");
+  section->ReadOneOf<bool>("frames_by",
+                           {{"names", false}, {"order", true}},
+                           &options->is_by_order,
+                           "for source folder: what tells which cloud and image belong together, "
+                           "the numbers or times in "
+                           "their names, or their places in both folders");
 }
 
 /// A lidar's source is one of its own, or a lidar by its protocol's name.
@@ -66,7 +65,7 @@ void ReadCameraSource(OptionSection* section, CameraDriverOptions* options) {
                               {"video", Source::kVideo},
                               {"genicam", Source::kGenicam}},
                              &options->source,
-                             "where images come from, a folder being of .png or .jpg files");
+                             "a folder (of .png or .jpg files) or another source");
 }
 
 void ReadSensor(OptionSection* lidar_driver,
@@ -134,8 +133,7 @@ void ReadLidarDriver(OptionSection* top,
                      const std::filesystem::path& rig_path,
                      LidarDriverOptions* options,
                      LidarSensorOptions* sensor) {
-  OptionSection section =
-      top->Section("lidar_driver", "where sweeps come from; paths are relative to this file");
+  OptionSection section = top->Section("lidar_driver", "where sweeps come from");
   ReadLidarSource(&section, options, sensor);
   ReadFrameOptions(rig_path, &section, options);
   ReadSensor(&section, rig_path, sensor);

@@ -14,7 +14,7 @@ void ReadPoseGuide(OptionSection* top, GuidanceOptions* options) {
   section.ReadOneOf<ErrorUnit>("unit",
                                {{"mm", ErrorUnit::kMillimetres}, {"px", ErrorUnit::kPixels}},
                                &tolerance->unit,
-                               "of the tolerance; mm are across the camera's ray");
+                               "of the tolerance (mm: across the camera's ray)");
   section.Read(
       "min_range_m", &tolerance->min_range_m, "that holds from this range from the camera...");
   section.Read("max_range_m", &tolerance->max_range_m, "...to this");

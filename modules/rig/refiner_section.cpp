@@ -70,14 +70,15 @@ void ReadLikelihood(OptionSection* refiner, LikelihoodOptions* options) {
 void ReadExtrinsicRefiner(OptionSection* top, RefinerOptions* options) {
   OptionSection section =
       top->Section("extrinsic_refiner", "one fit over all samples, from the mean");
-  section.ReadOneOf<std::optional<RefineMethod>>("method",
-                                                 {{"automatic", std::nullopt},
-                                                  {"joint", RefineMethod::kJoint},
-                                                  {"likelihood", RefineMethod::kLikelihood},
-                                                  {"reprojection", RefineMethod::kReprojection},
-                                                  {"average", RefineMethod::kAverage}},
-                                                 &options->method,
-                                                 "automatic is joint, else the best of the others");
+  section.ReadOneOf<std::optional<RefineMethod>>(
+      "method",
+      {{"automatic", std::nullopt},
+       {"joint", RefineMethod::kJoint},
+       {"likelihood", RefineMethod::kLikelihood},
+       {"reprojection", RefineMethod::kReprojection},
+       {"average", RefineMethod::kAverage}},
+      &options->method,
+      "how (automatic: joint, else the best of the others)");
   section.Read("centre_weight",
                &options->reprojection.centre_weight,
                "of method reprojection: weight of a centre's reprojection...");

@@ -27,11 +27,12 @@ void ReadLcm(OptionSection* top,
              Rig* rig,
              std::string* channel_prefix) {
   OptionSection section = top->Section("lcm", "the network that all modules share");
-  section.Read("url",
-               &rig->lcm_url,
-               "another port: networks on this one are not heard. ttl=0: nothing leaves the host. "
-               "recv_buf_size "
-               "lets whole images and sweeps arrive (bytes; see net.core.rmem_max)");
+  section.Read(
+      "url",
+      &rig->lcm_url,
+      "with another port, networks on this one are not heard. ttl=0: nothing leaves the host. "
+      "recv_buf_size "
+      "lets whole images and sweeps arrive (bytes; see net.core.rmem_max)");
   const std::string problem = LcmUrlProblem(rig->lcm_url);
   if (!problem.empty()) section.AddError("url", problem);
   section.Read("channel_prefix", channel_prefix, "put before each channel, \"FRONT_\"");

@@ -15,6 +15,7 @@
 #include "messaging/log.hpp"
 #include "result/lidar_bias_yaml.hpp"
 #include "result/result_file.hpp"
+#include "rig/default_rig.hpp"
 #include "support/pcap_file.hpp"
 #include "support/spectrum_packet.hpp"
 #include "support/synthetic_samples.hpp"
@@ -204,6 +205,7 @@ void WriteAll(const fs::path& folder) {
     const bool has_names = std::string(rig) == "several_sensors";
     corpora.Write("rig_file", rig, ReadWholeFile(path) + (has_names ? "\npair: front,left\n" : ""));
   }
+  corpora.Write("rig_file", "every_key", DefaultRigText());
   corpora.Write("poses_csv", "one_pose", Table());
   CalibrationResult result;
   result.lidar_bias.common = {0.01, 0.002, true};

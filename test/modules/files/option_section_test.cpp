@@ -37,7 +37,8 @@ TEST(OptionSection, KnowsTextThatReadsBackAsTheSame) {
     document.ThrowIfWrong();
     EXPECT_EQ(read, text);
   }
-  EXPECT_EQ(YamlText(0.02), "0.02");
+  EXPECT_EQ(YamlText(-0.0005), "-0.0005");
+  EXPECT_EQ(YamlText(10.0), "10");
   EXPECT_EQ(YamlText(std::vector<double>{}), "[]");
 }
 

@@ -1,6 +1,6 @@
 #include "rig/pose_guide_section.hpp"
 
-#include <string>
+#include "rig/section_reading.hpp"
 
 namespace voqcal {
 
@@ -11,10 +11,10 @@ void ReadPoseGuide(OptionSection* top, GuidanceOptions* options) {
   section.Read("tolerance",
                &tolerance->tolerance,
                "largest predicted error (RMS) of a lidar point in the image");
-  section.ReadOneOf<ErrorUnit>("unit",
-                               {{"mm", ErrorUnit::kMillimetres}, {"px", ErrorUnit::kPixels}},
-                               &tolerance->unit,
-                               "of the tolerance (mm: across the camera's ray)");
+  section.ReadOneOf("unit",
+                    ByName<ErrorUnit>({ErrorUnit::kMillimetres, ErrorUnit::kPixels}),
+                    &tolerance->unit,
+                    "of the tolerance (mm: across the camera's ray)");
   section.Read(
       "min_range_m", &tolerance->min_range_m, "that holds from this range from the camera...");
   section.Read("max_range_m", &tolerance->max_range_m, "...to this");

@@ -2,8 +2,6 @@
 
 #include <optional>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
 #include "core/sensor_network/sensor_pair.hpp"
 #include "rig/assessor_section.hpp"
@@ -77,12 +75,8 @@ void ReadVoqSelector(OptionSection* top,
                      SelectionOptions* options,
                      ConsistencyOptions* consistency) {
   OptionSection section = top->Section("voq_selector", "how sets of poses are chosen");
-  std::vector<std::pair<std::string, SelectionCriterion>> criteria;
-  for (const SelectionCriterion each : AllSelectionCriteria()) {
-    criteria.emplace_back(ToString(each), each);
-  }
   section.ReadOneOf("criterion",
-                    criteria,
+                    ByName(AllSelectionCriteria()),
                     &options->criterion,
                     "what is chosen by (voq: as published; all_poses: one set of all)");
   section.Read("seed", &options->seed, "of criterion random");

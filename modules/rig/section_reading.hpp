@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "files/option_section.hpp"
 
@@ -23,6 +25,14 @@ inline void ReadPath(const std::string& key,
   std::string text;
   section->Read(key, &text, meaning);
   *path = Beside(rig_path, text);
+}
+
+/// Words for OptionSection::ReadOneOf: each value by its name.
+template <typename Enum>
+std::vector<std::pair<std::string, Enum>> ByName(const std::vector<Enum>& values) {
+  std::vector<std::pair<std::string, Enum>> words;
+  for (const Enum value : values) words.emplace_back(ToString(value), value);
+  return words;
 }
 
 /// Reads nothing more of a section: what is left over or does not fit together becomes an error.

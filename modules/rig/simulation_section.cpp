@@ -11,13 +11,13 @@ namespace voqcal {
 namespace {
 
 void ReadScan(OptionSection* section, ScanOptions* scan) {
-  section->ReadOneOf<ScanPattern>(
+  section->ReadOneOf(
       "pattern",
-      {{"vlp16", ScanPattern::kVlp16},
-       {"spinning_64", ScanPattern::kSpinning64},
-       {"spinning_128", ScanPattern::kSpinning128},
-       {"raster", ScanPattern::kRaster},
-       {"rosette", ScanPattern::kRosette}},
+      ByName<ScanPattern>({ScanPattern::kVlp16,
+                           ScanPattern::kSpinning64,
+                           ScanPattern::kSpinning128,
+                           ScanPattern::kRaster,
+                           ScanPattern::kRosette}),
       &scan->pattern,
       "of the lidar's beams (raster: 110 x 25 degrees, like a Spectrum-Scan; rosette: "
       "never repeats, like a Livox)");

@@ -71,9 +71,9 @@ std::string DocumentedYaml(const std::vector<YamlDocument::KnownKey>& keys) {
     const std::string indent(2 * depth, ' ');
     const std::string name = key.path.substr(key.path.rfind('.') + 1);  // npos + 1 is 0
     const std::string value = key.value.empty() ? "" : " " + key.value;
+    const std::string meaning = (key.is_needed ? "needed: " : "") + key.meaning;
     if (depth == 0) text += "\n";
-    text +=
-        Commented(indent + (key.is_example ? "# " : "") + name + ":" + value, indent, key.meaning);
+    text += Commented(indent + (key.is_example ? "# " : "") + name + ":" + value, indent, meaning);
   }
   return text;
 }

@@ -62,7 +62,8 @@ OptionSection OptionSection::Section(const std::string& key, const std::string& 
 OptionSection OptionSection::RequiredSection(const std::string& key,
                                              const std::string& meaning,
                                              const std::string& remedy) {
-  Describe(key, "", "needed: " + meaning);
+  Describe(key, "", meaning);
+  MarkAsNeeded();
   return OptionSection(YamlSection::RequiredSection(key, remedy));
 }
 
@@ -104,6 +105,8 @@ void OptionSection::ReadWord(const std::string& key,
   }
   Describe(key, *word, meaning + ": " + Listed(words));
 }
+
+void OptionSection::MarkAsNeeded() { document().known_keys_.back().is_needed = true; }
 
 void OptionSection::Describe(const std::string& key,
                              const std::string& value,

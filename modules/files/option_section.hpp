@@ -45,7 +45,8 @@ class OptionSection : public YamlSection {
                     const std::string& meaning,
                     const std::string& remedy = "") {
     YamlSection::ReadRequired(key, value, remedy);
-    Describe(key, YamlText(*value), "needed: " + meaning);
+    Describe(key, YamlText(*value), meaning);
+    MarkAsNeeded();
   }
 
   /// Degrees in the file, radians here.
@@ -82,6 +83,8 @@ class OptionSection : public YamlSection {
 
  private:
   explicit OptionSection(YamlSection section) : YamlSection(std::move(section)) {}
+
+  void MarkAsNeeded();  ///< What was described last.
 
   void ReadWord(const std::string& key,
                 const std::vector<std::string>& words,

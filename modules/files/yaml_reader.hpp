@@ -20,6 +20,7 @@ class YamlDocument {
     std::string value;  ///< As YAML: the file's, or else its default; empty for a section.
     std::string meaning;
     bool is_example = false;  ///< `value` is not, or not exactly, what holds without the key.
+    bool is_needed = false;   ///< The file must have it.
   };
 
   /// @param name  what errors call the file.

@@ -38,7 +38,7 @@ void ReadBoard(OptionSection* top, BoardSpec* board) {
       top->RequiredSection("board", "metres; x runs along the width, y along the height");
   if (!top->Has("board")) return;
   section.ReadRequired(
-      "width_m", &board->width_m, "edge of the whole plate along x, without its stand");
+      "width_m", &board->width_m, "the whole plate's edge along x, not the pattern's");
   section.ReadRequired("height_m", &board->height_m, "its other edge, along y");
   section.Read("pattern_offset_x_m", &board->pattern_offset_x_m, kOffsetMeaning);
   section.Read("pattern_offset_y_m", &board->pattern_offset_y_m, "the same upwards: see above");

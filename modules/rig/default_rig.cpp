@@ -23,12 +23,14 @@ constexpr char kHead[] =
 
 }  // namespace
 
-std::string DefaultRigText() {
+std::vector<YamlDocument::KnownKey> DefaultRigKeys() {
   YamlDocument document("the default rig", kNeeded);
   Rig rig;
   ReadRigSections({"", {}}, &document, &rig);
   document.ThrowIfWrong();
-  return kHead + DocumentedYaml(document.known_keys());
+  return document.known_keys();
 }
+
+std::string DefaultRigText() { return kHead + DocumentedYaml(DefaultRigKeys()); }
 
 }  // namespace voqcal

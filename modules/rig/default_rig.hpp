@@ -1,11 +1,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "files/yaml_reader.hpp"
 
 namespace voqcal {
 
-/// A rig file with every key: what must be given by an example, all else by its default, and what
-/// each means. The same from `check_rig --print-defaults`.
+/// Every key of a rig file: what must be given by an example, all else by its default.
+std::vector<YamlDocument::KnownKey> DefaultRigKeys();
+
+/// The same as a rig file that says what each means.
 std::string DefaultRigText();
 
 }  // namespace voqcal

@@ -30,8 +30,7 @@ void ReadFrameOptions(const std::filesystem::path& rig_path,
                            {{"names", false}, {"order", true}},
                            &options->is_by_order,
                            "for source folder: what tells which cloud and image belong together, "
-                           "the numbers or times in "
-                           "their names, or their places in both folders");
+                           "the numbers or times in their names, or their places in both folders");
 }
 
 /// A lidar's source is one of its own, or a lidar by its protocol's name.

@@ -40,8 +40,8 @@ void ReadLikelihood(OptionSection* refiner, LikelihoodOptions* options) {
   section.Read(
       "outline_error_m",
       &options->outline_error_m,
-      "of single boards beyond the detectors' noise (how large it is, the session shows): of "
-      "an outline's centre...");
+      "of single boards beyond the detectors' noise (how large it is, the session shows): of an "
+      "outline's centre...");
   section.ReadDegrees(
       "outline_error_deg", &options->outline_error_rad, "...and its turn in the plane");
   section.Read("camera_error_m", &options->camera_error_m, "of a chessboard's depth...");

@@ -29,8 +29,7 @@ void ReadLcm(OptionSection* top,
       "url",
       &rig->lcm_url,
       "with another port, networks on this one are not heard. ttl=0: nothing leaves the host. "
-      "recv_buf_size "
-      "lets whole images and sweeps arrive (bytes; see net.core.rmem_max)");
+      "recv_buf_size lets whole images and sweeps arrive (bytes; see net.core.rmem_max)");
   const std::string problem = LcmUrlProblem(rig->lcm_url);
   if (!problem.empty()) section.AddError("url", problem);
   section.Read("channel_prefix", channel_prefix, "put before each channel, \"FRONT_\"");

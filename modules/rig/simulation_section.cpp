@@ -19,8 +19,8 @@ void ReadScan(OptionSection* section, ScanOptions* scan) {
                            ScanPattern::kRaster,
                            ScanPattern::kRosette}),
       &scan->pattern,
-      "of the lidar's beams (raster: 110 x 25 degrees, like a Spectrum-Scan; rosette: "
-      "never repeats, like a Livox)");
+      "of the lidar's beams (raster: 110 x 25 degrees, like a Spectrum-Scan; rosette: never "
+      "repeats, like a Livox)");
   section->ReadDegrees("dense_from_deg",
                        &scan->dense_from_rad,
                        "of a raster: rows are twice as dense from this elevation...");
@@ -36,8 +36,8 @@ void ReadSimulation(OptionSection* top, SimulationOptions* options) {
   options->T_camera_lidar = section
                                 .ReadTransform("T_camera_lidar",
                                                "the truth to be found: p_camera = T_camera_lidar * "
-                                               "p_lidar (lidar: x forward, y left, z up; "
-                                               "camera: x right, y down, z forward)")
+                                               "p_lidar (lidar: x forward, y left, z up; camera: x "
+                                               "right, y down, z forward)")
                                 .value_or(options->T_camera_lidar);
   section.Read("follows_guidance",
                &options->follows_guidance,

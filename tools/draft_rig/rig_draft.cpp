@@ -1,7 +1,6 @@
 #include "draft_rig/rig_draft.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -10,25 +9,11 @@
 #include "core/camera_detection/calibration_target.hpp"
 #include "files/number_text.hpp"
 #include "files/yaml_reader.hpp"
+#include "rig/default_rig.hpp"
 #include "rig/rig_sections.hpp"
 
 namespace voqcal {
 namespace {
-
-struct BoardNumber {
-  const char* key;
-  const char* example;
-  const char* meaning;
-};
-
-// Of the keys that a board must have; what else a pattern needs is told by the rig file's check.
-constexpr std::array kBoardNumbers = {
-    BoardNumber{"width_m", "0.61", "edge of the whole plate along x, metres, not of the pattern"},
-    BoardNumber{"height_m", "0.85", "its other edge"},
-    BoardNumber{"square_m", "0.095", "side of one square, metres: measure several at once"},
-    BoardNumber{"num_corners_x", "5", "inner corners along the width: one less than squares"},
-    BoardNumber{"num_corners_y", "7", "inner corners along the height"},
-};
 
 // To a thousandth of a pixel, or a millionth without unit: more digits would claim too much.
 std::string PixelText(double pixels) { return NumberText(std::round(pixels * 1e3) / 1e3); }
@@ -95,13 +80,15 @@ std::string RigDraft::MissingOfBoard() const {
     if (key.is_required) needed.emplace_back(key.name);
   }
   std::string lines;
-  for (const BoardNumber& number : kBoardNumbers) {
-    if (std::count(needed.begin(), needed.end(), number.key) == 0 || Has("board", number.key)) {
-      continue;
-    }
-    std::string example = std::string("board.") + number.key + "=" + number.example;
+  const std::string board = "board.";
+  for (const YamlDocument::KnownKey& key : DefaultRigKeys()) {
+    const std::string name = key.path.substr(key.path.find('.') + 1);
+    const bool is_missing = key.path == board + name && !Has("board", name) &&
+                            std::count(needed.begin(), needed.end(), name) != 0;
+    if (!is_missing) continue;
+    std::string example = key.path + "=" + key.value;
     example.resize(std::max<std::size_t>(example.size(), 24), ' ');
-    lines += "\n  " + example + "  " + number.meaning;
+    lines += "\n  " + example + "  " + key.meaning;
   }
   return lines;
 }

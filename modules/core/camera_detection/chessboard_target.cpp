@@ -33,8 +33,10 @@ const CalibrationTarget& Chessboard() {
   static const CalibrationTarget kChessboard{
       "chessboard",
       {{"square_m", &BoardSpec::square_m, "side of one square: measure several at once"},
-       {"num_corners_x", &BoardSpec::num_corners_x, "inner corners along the width; at least 3"},
-       {"num_corners_y", &BoardSpec::num_corners_y, "inner corners along the height; at least 3"},
+       {"num_corners_x",
+        &BoardSpec::num_corners_x,
+        "inner corners along the width: one less than squares"},
+       {"num_corners_y", &BoardSpec::num_corners_y, "inner corners along the height"},
        // ChArUco's, without effect: a rig file may keep them.
        {"dictionary",
         &BoardSpec::dictionary,

@@ -122,6 +122,41 @@ TEST_F(CalibrateRig, JoinsEveryPairOfTwoLidarsAndTwoCameras) {
   }
 }
 
+// Its topics have the sensors' names.
+TEST_F(CalibrateRig, TakesARecordingOfRos) {
+  const std::string folder = std::string(VOQCAL_SOURCE_DIR) + "/test/system/";
+  test::WriteStopsLog(truth_, test::TestBoard(), log_);
+  const test::Outcome made = test::Run(
+      {folder + "with_node.sh", "node", folder + "log_to_recording.mjs", log_, Path("raw.bag")});
+  if (made.status == 77) GTEST_SKIP() << made.out;
+  ASSERT_EQ(made.status, 0) << made.err;
+  ASSERT_EQ(Run("").status, 0);
+  const std::string expected = ReadWholeFile(out_ + "/rig_extrinsics.yaml");
+  std::string rig = rig_;
+  const auto run_bag = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> args = {
+        test::Program("calibrate_rig"), rig, "--bag", Path("raw.bag"), "--out", Path("of_bag")};
+    args.insert(args.end(), flags.begin(), flags.end());
+    return test::Run(args);
+  };
+  const test::Outcome outcome = run_bag({});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(ReadWholeFile(Path("of_bag/rig_extrinsics.yaml")), expected);
+  std::filesystem::remove_all(Path("of_bag"));
+  EXPECT_EQ(run_bag({"--topic", "lefd=/x"}).err,
+            "calibrate_rig: --topic lefd=/x must be a sensor of " + rig_ +
+                ", is 'lefd' (did you mean left?); it has front, rear, left, right\n");
+  const auto expect_no_topic = [&](const std::string& sensor) {
+    const test::Outcome none = run_bag({"--topic", sensor + "=/x"});
+    EXPECT_EQ(none.status, 1);
+    EXPECT_THAT(none.err, HasSubstr("no topic /x of type sensor_msgs/"));
+    EXPECT_FALSE(std::filesystem::exists(Path("of_bag")));
+  };
+  expect_no_topic("left");
+  rig = folder_.Write("pair.yaml", test::SimulatedRigText());  // its sensors have no names
+  expect_no_topic("lidar");
+}
+
 TEST_F(CalibrateRig, NamesTheSensorThatIsNotInTheLogAndHowToGoOnWithoutIt) {
   WriteEmptyLog({"LIDAR_POINTS_front", "LIDAR_POINTS_rear", "CAMERA_IMAGE_left", "IMU"});
   const test::Outcome outcome = Run("");

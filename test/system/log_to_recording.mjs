@@ -1,6 +1,7 @@
-// log_to_recording.mjs LOG OUT [ENCODING]: an LCM log of LIDAR_POINTS and CAMERA_IMAGE as a recording of
-// ROS, a bag or (OUT ends in .mcap or .db3, or is a folder: split) of ROS 2. Images are compressed ones, or,
-// with an encoding, grey ones that are written in it without a loss. For import_ros_test.
+// log_to_recording.mjs LOG OUT [ENCODING]: an LCM log of LIDAR_POINTS and CAMERA_IMAGE, or of those of several
+// sensors (LIDAR_POINTS_front), as a recording of ROS, a bag or (OUT ends in .mcap or .db3, or is a folder:
+// split) of ROS 2. Images are compressed ones, or, with an encoding, grey ones that are written in it without
+// a loss. For the tests of what reads recordings.
 import { statSync } from "node:fs";
 import { join } from "node:path";
 import { readLog } from "../../tools/node/lib/lcm_log.mjs";
@@ -16,7 +17,7 @@ import {
 
 const [log, out, encoding] = process.argv.slice(2);
 const types = voqcalTypes();
-const isWanted = ({ channel }) => channel === "LIDAR_POINTS" || channel === "CAMERA_IMAGE";
+const CHANNEL = /^(LIDAR_POINTS|CAMERA_IMAGE)(?:_(\w+))?$/;
 
 /** By encoding, the bytes of a grey pixel. */
 const PIXELS = {
@@ -39,11 +40,13 @@ function encoded(message) {
 
 const imageToRos = encoding === undefined ? compressedToRos : encoded;
 const imageType = encoding === undefined ? "CompressedImage" : "Image";
+const isWanted = ({ channel }) => CHANNEL.test(channel);
 const messages = [...readLog(log)].filter(isWanted).map(({ utime, channel, bytes }) => {
-  const isCloud = channel === "LIDAR_POINTS";
+  const [, kind, name] = CHANNEL.exec(channel);
+  const isCloud = kind === "LIDAR_POINTS";
   const message = types.decode(isCloud ? "pointcloud2_t" : "image_t", bytes);
   return {
-    topic: isCloud ? "/velodyne_points" : "/camera/image",
+    topic: isCloud ? `${name ? `/${name}` : ""}/velodyne_points` : `/${name ?? "camera"}/image`,
     type: isCloud ? "sensor_msgs/PointCloud2" : `sensor_msgs/${imageType}`,
     logTimeNs: utime * 1000n,
     message: isCloud ? cloudToRos(message) : imageToRos(message),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,13 @@ std::filesystem::path ImportBag(const Rig& rig,
                                 const BagInput& bag,
                                 RecordingTimes times,
                                 const std::filesystem::path& folder);
+
+/// The same of a rig whose sensors have names.
+/// @param topics  by sensor; those left out are matched as import_ros does it.
+std::filesystem::path ImportBagOfRig(const std::vector<Rig>& pairs,
+                                     const std::vector<std::string>& paths,
+                                     const std::map<std::string, std::string>& topics,
+                                     RecordingTimes times,
+                                     const std::filesystem::path& folder);
 
 }  // namespace voqcal

@@ -36,16 +36,14 @@ struct Detection {
 };
 
 /// By pair.
-std::vector<bool> UseLogTimes(const std::vector<Rig>& pairs,
-                              const std::filesystem::path& log,
-                              RecordingTimes times) {
+std::vector<bool> UseLogTimes(const std::vector<Rig>& pairs, const RigRecording& recording) {
   std::vector<bool> use_log_times;
   for (const Rig& rig : pairs) {
-    use_log_times.push_back(times == RecordingTimes::kLog);
-    if (times != RecordingTimes::kAuto) continue;
-    const ClockVerdict verdict = JudgeClocksOf(log, rig.channels);
+    use_log_times.push_back(recording.times == RecordingTimes::kLog);
+    if (recording.times != RecordingTimes::kAuto) continue;
+    const ClockVerdict verdict = JudgeClocksOf(recording.log, rig.channels);
     if (!verdict.words.empty())
-      spdlog::warn("{}: {}: {}", log.string(), FolderOf(rig), verdict.words);
+      spdlog::warn("{}: {}: {}", recording.given, FolderOf(rig), verdict.words);
     use_log_times.back() = verdict.use_log_times;
   }
   return use_log_times;
@@ -87,13 +85,13 @@ class SharedProgress {
   std::vector<double> shares_;
 };
 
-BoardsBySensor Detect(const std::vector<Detection>& detections, const std::filesystem::path& log) {
-  SharedProgress progress("looking for boards in " + log.filename().string(), detections.size());
+BoardsBySensor Detect(const std::vector<Detection>& detections, const RigRecording& recording) {
+  SharedProgress progress("looking for boards in " + recording.given, detections.size());
   std::vector<std::unique_ptr<DetectedBoards>> found(detections.size());
   ParallelFor(detections.size(), [&](std::size_t i) {
     const Detection& each = detections[i];
     found[i] = std::make_unique<DetectedBoards>(
-        *each.rig, each.sensor, log, each.key.second, [&progress, i](double share) {
+        *each.rig, each.sensor, recording.log, each.key.second, [&progress, i](double share) {
           progress.Show(i, share);
         });
   });
@@ -128,7 +126,7 @@ std::size_t MostAtOnce() {
 }
 
 PairSession Calibrate(const Rig& rig,
-                      const std::filesystem::path& log,
+                      const RigRecording& recording,
                       bool use_log_times,
                       const BoardsOfPair& boards,
                       const RigFolders& folders) {
@@ -138,9 +136,9 @@ PairSession Calibrate(const Rig& rig,
   OfflineRun run(rig, session_folders.scratch, boards);
   const auto times = use_log_times ? RecordingTimes::kLog : RecordingTimes::kStamps;
   run.FeedLog(
-      log, [](double, std::size_t) {}, times);
+      recording.log, [](double, std::size_t) {}, times);
   try {
-    FinishSession(rig, log, session_folders, &run);
+    FinishSession(rig, recording.given, session_folders, &run);
   } catch (const NoCalibration& error) {
     std::istringstream lines(error.what());
     for (std::string line; std::getline(lines, line);) spdlog::warn("{}: {}", folder, line);
@@ -156,11 +154,10 @@ PairSession Calibrate(const Rig& rig,
 std::string FolderOf(const Rig& pair) { return PairName(pair.lidar_name, pair.camera_name); }
 
 std::vector<PairSession> CalibratePairs(const std::vector<Rig>& pairs,
-                                        const std::filesystem::path& log,
-                                        RecordingTimes times,
+                                        const RigRecording& recording,
                                         const RigFolders& folders) {
-  const std::vector<bool> use_log_times = UseLogTimes(pairs, log, times);
-  const BoardsBySensor boards = Detect(DetectionsOf(pairs, use_log_times), log);
+  const std::vector<bool> use_log_times = UseLogTimes(pairs, recording);
+  const BoardsBySensor boards = Detect(DetectionsOf(pairs, use_log_times), recording);
   std::vector<PairSession> sessions(pairs.size());
   ParallelFor(
       pairs.size(),
@@ -168,7 +165,7 @@ std::vector<PairSession> CalibratePairs(const std::vector<Rig>& pairs,
         const bool use_log = use_log_times[i];
         const BoardsOfPair own = {boards.at({pairs[i].lidar_name, use_log}).get(),
                                   boards.at({pairs[i].camera_name, use_log}).get()};
-        sessions[i] = Calibrate(pairs[i], log, use_log, own, folders);
+        sessions[i] = Calibrate(pairs[i], recording, use_log, own, folders);
       },
       MostAtOnce());
   return sessions;

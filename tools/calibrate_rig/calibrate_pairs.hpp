@@ -16,6 +16,13 @@ struct RigFolders {
   std::filesystem::path out;
 };
 
+/// What the pairs are calibrated from.
+struct RigRecording {
+  std::filesystem::path log;
+  RecordingTimes times = RecordingTimes::kAuto;
+  std::string given;  ///< As it was given, for people: the log may be an import of it.
+};
+
 /// "front_left".
 std::string FolderOf(const Rig& pair);
 
@@ -25,8 +32,7 @@ std::string FolderOf(const Rig& pair);
 /// @throws std::runtime_error naming the log and the cause. That a pair gives no calibration is not
 ///     thrown but told, and its `problem`.
 std::vector<PairSession> CalibratePairs(const std::vector<Rig>& pairs,
-                                        const std::filesystem::path& log,
-                                        RecordingTimes times,
+                                        const RigRecording& recording,
                                         const RigFolders& folders);
 
 }  // namespace voqcal

@@ -12,6 +12,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "calibrate/bag.hpp"
 #include "calibrate/finish_session.hpp"
 #include "calibrate_rig/calibrate_pairs.hpp"
 #include "common/scratch_folder.hpp"
@@ -30,10 +31,15 @@ namespace {
 struct CalibrateRigArgs {
   std::filesystem::path rig;
   std::filesystem::path log;
+  std::vector<std::string> bag;               ///< Instead of log: a recording of ROS, its paths.
+  std::map<std::string, std::string> topics;  ///< Of bag, by sensor.
   std::filesystem::path out;
   std::string reference;  ///< Empty: the first lidar.
   RecordingTimes times = RecordingTimes::kAuto;
   std::string demand;  ///< "usable" or "good"; empty: none.
+
+  /// The recording, for people.
+  std::string Given() const { return bag.empty() ? log.string() : bag.front(); }
 };
 
 std::string Joined(const std::vector<std::string>& words) {
@@ -68,16 +74,30 @@ void TellDoubts(const std::vector<Rig>& pairs) {
   for (const std::string& doubt : doubts) spdlog::warn("{}", doubt);
 }
 
+/// @param flag  that names it.
 /// @throws std::runtime_error unless it is one of the sensors.
-std::string ReferenceOf(const CalibrateRigArgs& args, const RigSensors& sensors) {
-  if (args.reference.empty()) return sensors.lidars.front();
+void RequireSensor(const std::string& flag,
+                   const std::string& name,
+                   const CalibrateRigArgs& args,
+                   const RigSensors& sensors) {
   const std::vector<std::string> names = NamesOf(sensors);
   const std::set<std::string> words(names.begin(), names.end());
-  if (words.count(args.reference) != 0) return args.reference;
-  const std::string meant = NearestWord(args.reference, words);
-  throw std::runtime_error(
-      "--reference must be a sensor of " + args.rig.string() + ", is '" + args.reference + "'" +
-      (meant.empty() ? "" : " (did you mean " + meant + "?)") + "; it has " + Joined(names));
+  if (words.count(name) != 0) return;
+  const std::string meant = NearestWord(name, words);
+  throw std::runtime_error(flag + " must be a sensor of " + args.rig.string() + ", is '" + name +
+                           "'" + (meant.empty() ? "" : " (did you mean " + meant + "?)") +
+                           "; it has " + Joined(names));
+}
+
+void RequireSensors(const CalibrateRigArgs& args, const RigSensors& sensors) {
+  if (!args.reference.empty()) RequireSensor("--reference", args.reference, args, sensors);
+  for (const auto& [name, topic] : args.topics) {
+    RequireSensor("--topic " + name + "=" + topic, name, args, sensors);
+  }
+}
+
+bool AreByName(const std::vector<Rig>& pairs) {
+  return !PlaceOfRig(pairs.front().path).names.empty();
 }
 
 /// The file and, of its sensors, those whose channel is there.
@@ -114,14 +134,13 @@ void RequireChannels(const CalibrateRigArgs& args, const std::vector<Rig>& pairs
   }
   if (missing.empty()) return;
   const RigSensors sensors = SensorsOf(pairs);
-  const bool are_by_name = !PlaceOfRig(pairs.front().path).names.empty();
   std::string text;
   for (const auto& [sensor, channel] : missing) {
     text += (text.empty() ? "" : "\n") + args.log.string() + ": has no channel " + channel + " (" +
             sensor + ")";
   }
   text += "; it has " + Joined({there.begin(), there.end()});
-  if (are_by_name) {
+  if (AreByName(pairs)) {
     text += ". Name each sensor's own channel under its `channels`, or leave sensors out: " +
             WithoutMissing(args, sensors, missing);
   }
@@ -140,7 +159,7 @@ void RequireFolder(const CalibrateRigArgs& args, const std::vector<Rig>& pairs) 
 /// @throws std::runtime_error unless the rig is one piece.
 void RequireOnePiece(const CalibrateRigArgs& args, const RigExtrinsics& result) {
   if (result.network.IsUsable()) return;
-  std::string text = args.log.string() + ": no calibration of the rig: " + result.network.problem;
+  std::string text = args.Given() + ": no calibration of the rig: " + result.network.problem;
   for (const CalibratedPair& pair : result.pairs) {
     if (!pair.problem.empty()) text += "\n" + pair.Name() + ": " + pair.problem;
   }
@@ -149,18 +168,48 @@ void RequireOnePiece(const CalibrateRigArgs& args, const RigExtrinsics& result) 
   throw std::runtime_error(text);
 }
 
+/// @return the log.
+std::filesystem::path Import(const CalibrateRigArgs& args,
+                             const std::vector<Rig>& pairs,
+                             const std::filesystem::path& folder) {
+  if (AreByName(pairs)) return ImportBagOfRig(pairs, args.bag, args.topics, args.times, folder);
+  const Rig& rig = pairs.front();
+  BagInput bag;
+  bag.paths = args.bag;
+  for (const auto& [name, topic] : args.topics) {
+    (name == rig.lidar_name ? bag.lidar_topic : bag.image_topic) = topic;
+  }
+  return ImportBag(rig, bag, args.times, folder);
+}
+
+std::vector<PairSession> SessionsOf(const CalibrateRigArgs& args, const std::vector<Rig>& pairs) {
+  if (args.bag.empty()) RequireChannels(args, pairs);
+  const ScratchFolder scratch(args.out);
+  RigRecording recording = {args.log, args.times, args.Given()};
+  if (!args.bag.empty()) {
+    recording.log = Import(args, pairs, scratch.path());
+    recording.times = RecordingTimes::kStamps;  // the import has settled them
+  }
+  return CalibratePairs(pairs, recording, {scratch.path(), args.out});
+}
+
+/// "left=/left/image": a sensor's topic.
+void TakeTopic(const std::string& text, CalibrateRigArgs* args) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    throw CLI::ValidationError("--topic", "must be SENSOR=NAME, is " + text);
+  }
+  args->topics[text.substr(0, equals)] = text.substr(equals + 1);
+}
+
 void CalibrateRig(const CalibrateRigArgs& args) {
   const std::vector<Rig> pairs = LoadPairs(args.rig, PairLine::kIsIgnored);
   const RigSensors sensors = SensorsOf(pairs);
-  const std::string reference = ReferenceOf(args, sensors);
+  RequireSensors(args, sensors);
   RequireFolder(args, pairs);
   TellDoubts(pairs);
-  RequireChannels(args, pairs);
-  std::vector<PairSession> sessions;
-  {
-    const ScratchFolder scratch(args.out);
-    sessions = CalibratePairs(pairs, args.log, args.times, {scratch.path(), args.out});
-  }
+  const std::vector<PairSession> sessions = SessionsOf(args, pairs);
+  const std::string reference = args.reference.empty() ? sensors.lidars.front() : args.reference;
   const RigExtrinsics result = JoinSessions(
       sessions, reference, {pairs.front().rig_name, pairs.front().sha256, VOQCAL_VERSION});
   RequireOnePiece(args, result);
@@ -188,7 +237,23 @@ int main(int argc, char** argv) {
                  "The rig file (YAML), with its sensors by name under lidars and cameras; "
                  "FILE#front,left,right takes these alone")
       ->required();
-  app.add_option("--log", args.log, "A recording (LCM log) of all sensors")->required();
+  auto* input = app.add_option_group("input", "One of:");
+  input->add_option("--log", args.log, "A recording (LCM log) of all sensors");
+  auto* bag = input->add_option("--bag",
+                                args.bag,
+                                "A recording of ROS 1 or 2: .bag, .mcap, .db3, their folder; "
+                                "several files if it is split. Or an LCM log of lidars' packets or "
+                                "of types of your own");
+  input->require_option(1);
+  app.add_option_function<std::vector<std::string>>(
+         "--topic",
+         [&](const std::vector<std::string>& topics) {
+           for (const std::string& topic : topics) voqcal::TakeTopic(topic, &args);
+         },
+         "SENSOR=NAME, of --bag: a sensor's topic; may be left out where there are as many topics "
+         "as sensors, with the sensors' names in theirs")
+      ->needs(bag)
+      ->allow_extra_args(false);
   app.add_option("--out",
                  args.out,
                  "Folder for rig_extrinsics.yaml and, in LIDAR_CAMERA/, what calibrate leaves of "

@@ -42,7 +42,7 @@ struct PacketArgs {
 LidarSensorOptions SensorOptions(const PacketArgs& args, bool* is_model_known) {
   LidarSensorOptions options;
   if (!args.rig.empty()) {
-    const Rig rig = LoadRig(args.rig);
+    const Rig rig = LoadRig(args.rig, SensorChoice::kLidar);
     options = rig.lidar_sensor;
     *is_model_known = rig.lidar_driver.source == LidarDriverOptions::Source::kSensor;
   }

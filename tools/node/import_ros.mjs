@@ -6,6 +6,7 @@ import { dirname, join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { judgeClocks } from "./lib/clocks.mjs";
 import { UserError, runCommand } from "./lib/command.mjs";
+import { chooseTopic, sensorsOf } from "./lib/import_sensors.mjs";
 import { cameraTarget, cloudTarget, imageTarget, packetTarget } from "./lib/import_targets.mjs";
 import { LogWriter } from "./lib/lcm_log.mjs";
 import { LcmTypes } from "./lib/lcm_types.mjs";
@@ -17,14 +18,17 @@ import { openRecording } from "./lib/recordings/open.mjs";
 import { cameraSection, cameraToLcm, isRectifiedTopic } from "./lib/sensor_msgs/cameras.mjs";
 import { positionDoubt, timeKind } from "./lib/sensor_msgs/clouds.mjs";
 import { bitsUsed } from "./lib/sensor_msgs/images.mjs";
-import { CAMERA_INFOS, CLOUDS, IMAGES } from "./lib/sensor_msgs/messages.mjs";
-import { PACKETS, isBesidePackets } from "./lib/sensor_msgs/packets.mjs";
+import { CAMERA_INFOS, IMAGES } from "./lib/sensor_msgs/messages.mjs";
+import { PACKETS } from "./lib/sensor_msgs/packets.mjs";
 
 const command = {
   name: "import_ros",
   minPositional: 1,
   required: [],
   options: {
+    lidar: { type: "string", multiple: true },
+    camera: { type: "string", multiple: true },
+    topic: { type: "string", multiple: true },
     "lidar-topic": { type: "string" },
     "image-topic": { type: "string" },
     "camera-info-topic": { type: "string" },
@@ -60,29 +64,16 @@ const command = {
                                unless they are of different clocks, and says so
   --lidar-channel, --image-channel, --camera-info-channel NAME
                                the rig's channels, where they are not LIDAR_POINTS, CAMERA_IMAGE, CAMERA_INFO
+or     import_ros RECORDING... --out LOG --lidar SENSOR=CHANNEL... --camera SENSOR=CHANNEL... [--topic SENSOR=NAME]...
+  a rig of several sensors, each onto a channel of its own (calibrate_rig --bag does it by the rig file); --rig as above.
+  --topic SENSOR=NAME          the sensor's topic. May be left out where a topic is called as the sensor's channel, or
+                               there are as many topics as sensors of its kind, with the sensors' names in theirs
 or     import_ros RECORDING... --print-camera [--camera-info-topic NAME] [--image-topic NAME]
   prints CameraInfo as the camera section of a rig file; for a topic of rectified images (image_rect...), of those`,
 };
 
 const NUM_SAMPLED = 20; // messages of each topic that clocks, times and bits are told by
 const MAX_SAMPLED_BYTES = 1 << 28;
-
-/** The topic that was asked for, or the only one of these types. */
-function chooseTopic(recording, flag, wanted, types, preferred) {
-  const { topics } = recording;
-  const isAside = (name) => PACKETS.includes(topics.get(name).type) && isBesidePackets(name);
-  const isRight = (name) =>
-    types.includes(topics.get(name)?.type) && !name.endsWith("/compressedDepth") && !isAside(name);
-  for (const name of [wanted, wanted && `/${wanted}`]) if (isRight(name)) return name;
-  const candidates = [...topics.keys()].filter(isRight);
-  if (wanted === undefined && candidates.length === 1) return candidates[0];
-  if (wanted === undefined && candidates.includes(preferred)) return preferred;
-  const there = [...topics].map(([name, { type, count }]) => `${name} (${type}, ${count})`).sort();
-  const what = wanted === undefined ? `${candidates.length} topics` : `no topic ${wanted}`;
-  throw new UserError(
-    `has ${what} of type ${types.join(" or ")} (--${flag} names one); it has ${there.join(", ")}`,
-  );
-}
 
 /** The image's topic, if it was named or there is only one: it says whose CameraInfo, and if it is rectified. */
 function imageTopicIfClear(recording, flags) {
@@ -124,52 +115,54 @@ async function* inFixedOrder(messages, names) {
 }
 
 /** What becomes of each topic that is taken. */
-async function targetsOf(recording, flags) {
+async function targetsOf(recording, sensors, flags) {
   const plan = new Map();
-  const choose = (kind, types) =>
-    chooseTopic(recording, `${kind}-topic`, flags[`${kind}-topic`], types, flags[`${kind}-channel`]);
   const typeOf = (topic) => recording.topics.get(topic).type;
-  const lidarTopic = flags["images-only"] ? undefined : choose("lidar", lidarTypes(recording, flags));
-  const imageTopic = choose("image", IMAGES);
-  if (lidarTopic !== undefined) {
-    if (PACKETS.includes(typeOf(lidarTopic))) await addPackets(plan, recording, lidarTopic, flags);
-    else plan.set(lidarTopic, cloudTarget(lidarTopic, typeOf(lidarTopic), flags["lidar-channel"]));
+  const senders = sensors.filter(({ kind, topic }) => kind === "lidar" && PACKETS.includes(typeOf(topic)));
+  for (const sensor of sensors) {
+    const { kind, topic, channel } = sensor;
+    if (senders.includes(sensor)) await addPackets(plan, recording, sensor, isTopicBeside(topic, senders), flags);
+    else plan.set(topic, (kind === "lidar" ? cloudTarget : imageTarget)(topic, typeOf(topic), channel));
   }
-  plan.set(imageTopic, imageTarget(imageTopic, typeOf(imageTopic), flags["image-channel"]));
-  if (flags["camera-info-topic"] !== undefined) {
-    const topic = choose("camera-info", CAMERA_INFOS);
-    plan.set(topic, cameraTarget(topic, typeOf(topic), flags["camera-info-channel"], imageTopic));
-  }
+  if (flags["camera-info-topic"] !== undefined) addCameraInfo(plan, recording, sensors, flags);
   return plan;
 }
 
-/** Clouds; packets where there are none, or they are asked for. */
-function lidarTypes(recording, flags) {
-  if (flags["lidar-topic"] !== undefined) return [...CLOUDS, ...PACKETS];
-  const there = [...recording.topics.values()].map(({ type }) => type);
-  const hasPackets = there.some((type) => PACKETS.includes(type));
-  return there.some((type) => CLOUDS.includes(type)) || !hasPackets ? CLOUDS : PACKETS;
+function addCameraInfo(plan, recording, sensors, flags) {
+  const flag = "camera-info-topic";
+  const channel = flags["camera-info-channel"];
+  const topic = chooseTopic(recording, flag, flags[flag], CAMERA_INFOS, channel);
+  const { topic: imageTopic } = sensors.find(({ kind }) => kind === "image");
+  plan.set(topic, cameraTarget(topic, recording.topics.get(topic).type, channel, imageTopic));
+}
+
+/** Whether a topic without points belongs to the lidar of `topic`: the only one, or that of its name or folder. */
+function isTopicBeside(topic, senders) {
+  const folder = dirname(topic);
+  const isWithin = (name) => name.startsWith(topic) || (folder !== "/" && dirname(name) === folder);
+  return senders.length === 1 ? () => true : isWithin;
 }
 
 /** The packets' topic, and those of the sensor's state, which RoboSense's decoders learn from. */
-async function addPackets(plan, recording, topic, flags) {
-  const metadata = await metadataFile(recording);
-  const args = { rig: flags.rig, model: flags["lidar-model"], calibration: flags["lidar-calibration"], metadata };
+async function addPackets(plan, recording, { name, topic, channel }, isBeside, flags) {
+  const metadata = await metadataFile(recording, isBeside);
+  const rig = flags.rig && flags.lidar ? `${flags.rig}#${name}` : flags.rig;
+  const args = { rig, model: flags["lidar-model"], calibration: flags["lidar-calibration"], metadata };
   const given = Object.entries(args).filter(([, value]) => value !== undefined);
   const target = packetTarget(
     topic,
     recording.topics.get(topic).type,
-    flags["lidar-channel"],
-    given.flatMap(([name, value]) => [`--${name}`, value]),
+    channel,
+    given.flatMap(([flag, value]) => [`--${flag}`, value]),
   );
-  const isState = ([name, { type }]) => PACKETS.includes(type) && /difop/i.test(name);
-  for (const [name] of [...recording.topics].filter(isState)) plan.set(name, target);
+  const isState = ([each, { type }]) => PACKETS.includes(type) && /difop/i.test(each) && isBeside(each);
+  for (const [each] of [...recording.topics].filter(isState)) plan.set(each, target);
   plan.set(topic, target);
 }
 
 /** Ouster's driver records its sensor's metadata beside the packets, as text. */
-async function metadataFile(recording) {
-  const isMetadata = ([name, { type }]) => type === "std_msgs/String" && /metadata$/.test(name);
+async function metadataFile(recording, isBeside) {
+  const isMetadata = ([name, { type }]) => type === "std_msgs/String" && /metadata$/.test(name) && isBeside(name);
   const topics = [...recording.topics].filter(isMetadata).map(([name]) => name);
   if (topics.length === 0) return undefined;
   for await (const message of recording.messages(topics)) {
@@ -182,21 +175,19 @@ async function metadataFile(recording) {
   return undefined;
 }
 
-/** The first messages of clouds and images: {message, stampNs, logTimeNs} by kind. Broken ones are passed over. */
-async function firstMessages(recording, plan) {
-  const first = { lidar: [], image: [] };
-  const names = [...plan].filter(([, { kind }]) => kind in first).map(([name]) => name);
+/** The first messages of each sensor: {message, stampNs, logTimeNs} by topic. Broken ones are passed over. */
+async function firstMessages(recording, plan, sensors) {
+  const first = new Map(sensors.map(({ topic }) => [topic, []]));
   let numBytes = 0;
-  for await (const { topic, logTimeNs, data, decode } of recording.messages(names)) {
-    const { kind, prepare, stampNs } = plan.get(topic);
+  for await (const { topic, logTimeNs, data, decode } of recording.messages([...first.keys()])) {
+    const { prepare, stampNs } = plan.get(topic);
     numBytes += data.length;
-    const kinds = [...plan.values()].map((target) => target.kind).filter((each) => each in first);
-    const isEnough = kinds.every((each) => first[each].length >= NUM_SAMPLED);
+    const isEnough = [...first.values()].every(({ length }) => length >= NUM_SAMPLED);
     if (isEnough || numBytes > MAX_SAMPLED_BYTES) break;
-    if (first[kind].length >= NUM_SAMPLED) continue;
+    if (first.get(topic).length >= NUM_SAMPLED) continue;
     try {
       const message = prepare(decode());
-      first[kind].push({ message, logTimeNs, stampNs: stampNs(message, logTimeNs) });
+      first.get(topic).push({ message, logTimeNs, stampNs: stampNs(message, logTimeNs) });
     } catch {
       // Counted when it is imported.
     }
@@ -204,21 +195,54 @@ async function firstMessages(recording, plan) {
   return first;
 }
 
-/** What only the recording tells: clocks, the times of points, the bits of pixels. Adds the words for them. */
-async function settle(recording, plan, flags, words) {
-  const first = await firstMessages(recording, plan);
-  const clocks = judgeClocks(first.lidar, first.image);
+/**
+ * What only the recording tells: clocks, the times of points, the bits of pixels. Adds the words for them.
+ * @returns {useLogTimes, told}: `told` by topic.
+ */
+async function settle(recording, plan, sensors, flags, words) {
+  const first = await firstMessages(recording, plan, sensors);
+  const clocks = clocksOf(sensors, first);
+  if (flags.times === "auto") words.push(...clocks.words);
   const useLogTimes = flags.times === "log" || (flags.times === "auto" && clocks.useLogTimes);
-  if (flags.times === "auto" && clocks.words) words.push(clocks.words);
-  const hasPackets = [...plan.values()].some((target) => target.hasPackets);
-  const clouds = hasPackets ? [] : first.lidar.map(({ message }) => message);
+  const told = new Map();
+  for (const sensor of sensors) {
+    const messages = first.get(sensor.topic).map(({ message }) => message);
+    const say = (line) => words.push(flags.lidar ? `${sensor.name}: ${line}` : line);
+    const isOfPackets = plan.get(sensor.topic).hasPackets;
+    if (!isOfPackets) told.set(sensor.topic, (sensor.kind === "lidar" ? toldOfClouds : toldOfImages)(messages, say));
+  }
+  return { useLogTimes, told };
+}
+
+/** Log times hold for all sensors where two of them need these. */
+function clocksOf(sensors, first) {
+  const pairs = new Map(); // by words
+  let useLogTimes = false;
+  const ofKind = (kind) => sensors.filter((sensor) => sensor.kind === kind);
+  for (const lidar of ofKind("lidar")) {
+    for (const camera of ofKind("image")) {
+      const judged = judgeClocks(first.get(lidar.topic), first.get(camera.topic));
+      useLogTimes ||= judged.useLogTimes;
+      const names = [...(pairs.get(judged.words) ?? []), `${lidar.name} with ${camera.name}`];
+      if (judged.words) pairs.set(judged.words, names);
+    }
+  }
+  const isPair = sensors.length <= 2;
+  return { useLogTimes, words: [...pairs].map(([words, names]) => (isPair ? words : `${names.join(", ")}: ${words}`)) };
+}
+
+function toldOfClouds(clouds, say) {
   const times = timeKind(clouds);
-  if (times) words.push(times.words);
+  if (times) say(times.words);
   const doubt = positionDoubt(clouds);
-  if (doubt) words.push(doubt);
-  const bits = bitsUsed(first.image.map(({ message }) => message));
-  if (bits) words.push(`images have ${bits} bits of 16: the upper 8 of these are taken`);
-  return { useLogTimes, lidar: times, image: bits };
+  if (doubt) say(doubt);
+  return times;
+}
+
+function toldOfImages(images, say) {
+  const bits = bitsUsed(images);
+  if (bits) say(`images have ${bits} bits of 16: the upper 8 of these are taken`);
+  return bits;
 }
 
 async function writeLog(recording, plan, settled, out, progress, words) {
@@ -247,10 +271,10 @@ async function writeLog(recording, plan, settled, out, progress, words) {
 }
 
 /** One message; a broken one is counted and left out. */
-async function writeMessage({ logTimeNs, decode }, target, settled, log) {
+async function writeMessage({ topic, logTimeNs, decode }, target, { useLogTimes, told }, log) {
   let encoded;
   try {
-    encoded = await target.encode(target.prepare(decode()), logTimeNs, settled);
+    encoded = await target.encode(target.prepare(decode()), logTimeNs, useLogTimes, told.get(topic));
   } catch (error) {
     if (error instanceof DecoderFailed) throw error;
     target.tally.leaveOut(error.message);
@@ -265,12 +289,13 @@ async function importRecording(recording, flags) {
   if (!["auto", "stamps", "log"].includes(flags.times)) {
     throw new UserError(`--times must be auto, stamps or log, is ${flags.times}`);
   }
-  const plan = await targetsOf(recording, flags);
+  const sensors = sensorsOf(recording, flags);
+  const plan = await targetsOf(recording, sensors, flags);
   prepareOutput(flags.out, flags.force);
   const words = [];
   const progress = new Progress("importing");
   try {
-    const settled = await settle(recording, plan, flags, words);
+    const settled = await settle(recording, plan, sensors, flags, words);
     await writeLog(recording, plan, settled, flags.out, progress, words);
   } finally {
     for (const target of plan.values()) target.close?.();

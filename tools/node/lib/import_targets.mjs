@@ -1,5 +1,5 @@
 // What becomes of a topic's messages: one target a topic, with
-//   kind, channel, rosType, tally
+//   channel, rosType, tally
 //   prepare    a decoded message made fit to be looked at; throws what is wrong with it
 //   stampNs    of what was prepared; where it has none, when it was recorded
 //   encode     async: what was prepared as LCM messages, none or many, encoded
@@ -16,19 +16,18 @@ import { Tally } from "./tally.mjs";
 
 const types = voqcalTypes();
 
-/** One message in, one out. `toLcm` takes what was prepared, utime, number and what was settled of its kind. */
-function oneToOne(kind, topic, rosType, channel, type, prepare, toLcm) {
+/** One message in, one out. `toLcm` takes what was prepared, utime, number and what was told of its topic. */
+function oneToOne(topic, rosType, channel, type, prepare, toLcm) {
   const tally = new Tally(`topic ${topic}`);
   return {
-    kind,
     channel,
     rosType,
     tally,
     prepare: (message) => prepare(message, rosType),
     stampNs: stampOf,
-    async encode(message, logTimeNs, settled) {
-      const timeNs = settled.useLogTimes ? logTimeNs : stampOf(message);
-      return [types.encodeParts(type, toLcm(message, timeNs / 1000n, tally.numTaken, settled[kind]))]; // LCM knows no finer
+    async encode(message, logTimeNs, useLogTimes, told) {
+      const timeNs = useLogTimes ? logTimeNs : stampOf(message);
+      return [types.encodeParts(type, toLcm(message, timeNs / 1000n, tally.numTaken, told))]; // LCM knows no finer
     },
     finish: async () => ({ encoded: [] }),
   };
@@ -37,14 +36,14 @@ function oneToOne(kind, topic, rosType, channel, type, prepare, toLcm) {
 const asItIs = (message) => message;
 
 export const cloudTarget = (topic, rosType, channel) =>
-  oneToOne("lidar", topic, rosType, channel, "pointcloud2_t", asCloud, cloudToLcm);
+  oneToOne(topic, rosType, channel, "pointcloud2_t", asCloud, cloudToLcm);
 
 export const imageTarget = (topic, rosType, channel) =>
-  oneToOne("image", topic, rosType, channel, "image_t", asItIs, imageToLcm);
+  oneToOne(topic, rosType, channel, "image_t", asItIs, imageToLcm);
 
 export function cameraTarget(topic, rosType, channel, imageTopic) {
   const toLcm = (message, utime, seq) => cameraToLcm(message, utime, seq, isRectifiedTopic(imageTopic));
-  return oneToOne("camera-info", topic, rosType, channel, "camera_info_t", asItIs, toLcm);
+  return oneToOne(topic, rosType, channel, "camera_info_t", asItIs, toLcm);
 }
 
 /** A lidar's packets: sweeps come out of them when they are complete. @param decoderArgs  of decode_packets. */
@@ -56,14 +55,13 @@ export function packetTarget(topic, rosType, channel, decoderArgs) {
     return clouds;
   };
   return {
-    kind: "lidar",
     channel,
     rosType,
     tally: new Tally(`topic ${topic}`),
     hasPackets: true,
     prepare: packetsOf,
     stampNs: ({ stampNs }, logTimeNs) => stampNs ?? logTimeNs,
-    async encode(message, logTimeNs, { useLogTimes }) {
+    async encode(message, logTimeNs, useLogTimes) {
       return counted(await decoder.add(message.packets, arrivalTimesNs(message, logTimeNs, useLogTimes)));
     },
     async finish() {

@@ -179,8 +179,8 @@ function imported(file, ...flags) {
   return { sweeps: sweepsOf(path("out.lcm")), out };
 }
 
-function sweepsOf(log) {
-  const clouds = [...readLog(log)].filter(({ channel }) => channel === "LIDAR_POINTS");
+function sweepsOf(log, wanted = "LIDAR_POINTS") {
+  const clouds = [...readLog(log)].filter(({ channel }) => channel === wanted);
   return clouds.map(({ bytes }) => {
     const { utime, width, point_step: step, fields, data } = types.decode("pointcloud2_t", bytes);
     const parts = ["x", "y", "z", "intensity", "ring", "time"].map((name) => fields.find((field) => field.name === name));
@@ -262,6 +262,26 @@ test("sweeps end where the rig file says", options, async () => {
   await writeMcap(path("e.mcap"), withImages(scansOf(vlp16Packets(), "velodyne_msgs/VelodyneScan")));
   const { sweeps } = imported(path("e.mcap"), "--rig", path("rig.yaml"));
   assert.deepEqual(sweeps, decoded(path("a.pcap"), "velodyne_vlp16", "90"));
+});
+
+test("of a rig's lidars each is decoded as its own section says", options, async () => {
+  const rig = `rig: truck
+board: {width_m: 0.6, height_m: 0.8, square_m: 0.1, num_corners_x: 5, num_corners_y: 7}
+lidars:
+  front: {lidar_driver: {source: velodyne_vlp16}}
+  rear: {lidar_driver: {source: velodyne_vlp16, sensor: {split_azimuth_deg: 90}}}
+cameras:
+  left:
+    camera: {lens_model: plumb_bob, width_px: 2, height_px: 1, fx_px: 2, fy_px: 2, cx_px: 1, cy_px: 0.5, distortion: [0, 0, 0, 0, 0]}
+`;
+  writeFileSync(path("truck.yaml"), rig);
+  const scans = scansOf(vlp16Packets(), "velodyne_msgs/VelodyneScan");
+  const on = (topic) => scans.map((scan) => ({ ...scan, topic }));
+  await writeMcap(path("truck.mcap"), withImages([...on("/rear/packets"), ...on("/front/packets")]));
+  const sensors = ["--lidar", "front=FRONT", "--lidar", "rear=REAR", "--camera", "left=LEFT"];
+  imported(path("truck.mcap"), "--rig", path("truck.yaml"), ...sensors);
+  assert.deepEqual(sweepsOf(path("out.lcm"), "FRONT"), decoded(path("a.pcap"), "velodyne_vlp16"));
+  assert.deepEqual(sweepsOf(path("out.lcm"), "REAR"), decoded(path("a.pcap"), "velodyne_vlp16", "90"));
 });
 
 for (const type of ["robosense_msgs/RobosenseScan", "rslidar_msgs/rslidarScan"]) {

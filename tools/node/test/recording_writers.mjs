@@ -38,7 +38,7 @@ const time = (ns) => ({ sec: Number(ns / 1_000_000_000n), nsec: Number(ns % 1_00
 const header = (message, frame_id) => ({ seq: 0, stamp: time(message.utime * 1000n), frame_id });
 
 export function cloudToRos(message) {
-  return { header: header(message, "velodyne"), ...message, is_bigendian: false, is_dense: true };
+  return { header: header(message, message.frame_id), ...message, is_bigendian: false, is_dense: true };
 }
 
 export function compressedToRos(message) {

@@ -4,6 +4,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include <nlohmann/json.hpp>
+
 #include "result/extrinsic_text.hpp"
 
 namespace voqcal {
@@ -99,11 +101,45 @@ std::string CamchainText(const SensorTree& tree, const Cameras& cameras) {
          ". Metres.\n" + chain;
 }
 
+using Json = nlohmann::ordered_json;
+
+Json JsonOf(const CameraModel& camera) {
+  const auto distortion_end = camera.distortion.begin() + NumDistortion(camera.lens);
+  return {{"lens_model", ToString(camera.lens)},
+          {"width_px", camera.width_px},
+          {"height_px", camera.height_px},
+          {"fx_px", camera.fx_px},
+          {"fy_px", camera.fy_px},
+          {"cx_px", camera.cx_px},
+          {"cy_px", camera.cy_px},
+          {"distortion", std::vector<double>(camera.distortion.begin(), distortion_end)}};
+}
+
+Json JsonOf(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q(T.linear());
+  const Eigen::Vector3d& t = T.translation();
+  return {{"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+          {"translation_m", {t.x(), t.y(), t.z()}}};
+}
+
+std::string JsonText(const SensorTree& tree, const Cameras& cameras) {
+  Json sensors = Json::object();
+  for (const SensorTree::Sensor& sensor : tree.sensors) {
+    Json entry = {{"kind", sensor.is_lidar ? "lidar" : "camera"},
+                  {"T_reference_sensor", JsonOf(sensor.T_reference_sensor)}};
+    const auto camera = cameras.find(sensor.name);
+    if (camera != cameras.end()) entry["camera"] = JsonOf(camera->second);
+    sensors[sensor.name] = entry;
+  }
+  const Json json = {{"rig", tree.rig}, {"reference", tree.reference}, {"sensors", sensors}};
+  return json.dump(2) + "\n";
+}
+
 }  // namespace
 
 const std::vector<std::string>& TreeFormats() {
   static const std::vector<std::string> kNames = {
-      "ros", "ros1", "ros2", "urdf", "bot_frames", "kalibr"};
+      "ros", "ros1", "ros2", "urdf", "bot_frames", "kalibr", "json"};
   return kNames;
 }
 
@@ -113,6 +149,7 @@ std::string TreeText(const std::string& format, const SensorTree& tree, const Ca
   if (format == "urdf") return RobotText(tree, edges);
   if (format == "bot_frames") return FramesText(tree, edges);
   if (format == "kalibr") return CamchainText(tree, cameras);
+  if (format == "json") return JsonText(tree, cameras);
   std::string known;
   for (const std::string& name : TreeFormats()) known += (known.empty() ? "" : ", ") + name;
   throw std::invalid_argument("no format '" + format + "' of a whole rig; there are: " + known +

@@ -21,6 +21,8 @@ const std::vector<std::string>& TreeFormats();
 /// - bot_frames: the coordinate_frames block; each frame is relative to the reference.
 /// - kalibr: a camchain.yaml of the cameras; T_cn_cnm1 takes the coordinates of the camera before
 ///   to the camera's, T_cam_lidar those of the first lidar.
+/// - json: each sensor's kind, its pose in the reference's frame as rig_extrinsics.yaml has it, and
+///   a camera's lens as the rig file has it.
 ///
 /// @param cameras  lenses by the cameras' names, for formats that have one.
 /// @throws std::invalid_argument with one line that lists the formats, if `format` is none of them.

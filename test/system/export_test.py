@@ -7,6 +7,7 @@ usage: export_test.py BIN_FOLDER   (the folder with export_extrinsic)
 """
 
 import ast
+import json
 import pathlib
 import re
 import shlex
@@ -379,6 +380,16 @@ class ExportExtrinsic(unittest.TestCase):
             chain["cam1"]["T_cn_cnm1"], T_right_top @ np.linalg.inv(T_left_top), rtol=0, atol=1e-9
         )
         self.assertNotIn("T_cn_cnm1", chain["cam0"])
+        whole = json.loads(export("json"))
+        self.assertEqual((whole["rig"], whole["reference"]), ("a<b", "top"))
+        self.assertEqual([each["kind"] for each in whole["sensors"].values()], ["lidar"] * 2 + ["camera"] * 2)
+        poses = {name: each["T_reference_sensor"] for name, each in whole["sensors"].items() if name != "top"}
+        assert_same(
+            {
+                name: transform(rotation_of_quaternion(*pose["quaternion_xyzw"]), pose["translation_m"])
+                for name, pose in poses.items()
+            }
+        )
 
     def test_a_whole_rig_is_refused_in_one_line_where_a_format_holds_one_camera(self):
         self.rig_result()

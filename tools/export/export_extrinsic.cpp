@@ -93,15 +93,17 @@ void Export(const ExportArgs& args) {
 int main(int argc, char** argv) {
   CLI::App app("Writes the extrinsic of a result as other programs take it.", "export_extrinsic");
   voqcal::ExportArgs args;
-  std::string formats;
+  std::string formats = "One of:";
   for (const std::string& name : voqcal::ExportFormats()) formats += " " + name;
+  formats += "; of a rig:";
+  for (const std::string& name : voqcal::TreeFormats()) formats += " " + name;
   app.add_option(
          "result",
          args.result,
          "A result's folder or its extrinsic.yaml, or any YAML with T_camera_lidar; or those "
          "of a rig (rig_extrinsics.yaml)")
       ->required();
-  app.add_option("--format", args.format, "One of:" + formats)->required();
+  app.add_option("--format", args.format, formats)->required();
   CLI::Option* parent =
       app.add_option("--parent", args.extrinsic.parent, "Name of the lidar's frame")
           ->capture_default_str();

@@ -1,4 +1,4 @@
-// voqcal's messages as Foxglove's. Frames are "lidar" and "camera" (the optical frame), as everywhere.
+// voqcal's messages as Foxglove's. A camera's frame is the optical one, as everywhere.
 
 const MJPEG = 1196444237;
 const PNG = 541544016;
@@ -17,19 +17,19 @@ const timestamp = (utime) => ({
 });
 const xyz = ([x, y, z]) => ({ x, y, z });
 
-/** Pose of the camera in the lidar frame: Foxglove's transforms take a child's coordinates to its parent. */
-export function lidarToCamera(result, utime) {
-  const { quaternion_xyzw: q, translation_m: t } = result.T_lidar_camera;
+/** Pose of the child in the parent's frame: Foxglove's transforms take a child's coordinates to its parent. */
+export function transform({ parent, child, T_parent_child }, utime) {
+  const { quaternion_xyzw: q, translation_m: t } = T_parent_child;
   return {
     timestamp: timestamp(utime),
-    parent_frame_id: "lidar",
-    child_frame_id: "camera",
+    parent_frame_id: parent,
+    child_frame_id: child,
     translation: xyz(t),
     rotation: { ...xyz(q), w: q[3] },
   };
 }
 
-export function calibration(camera, utime) {
+export function calibration(frame, camera, utime) {
   const { fx_px, fy_px, cx_px, cy_px } = camera;
   const models = {
     equidistant: "kannala_brandt",
@@ -38,7 +38,7 @@ export function calibration(camera, utime) {
   };
   return {
     timestamp: timestamp(utime),
-    frame_id: "camera",
+    frame_id: frame,
     width: camera.width_px,
     height: camera.height_px,
     distortion_model: models[camera.lens_model],
@@ -49,24 +49,24 @@ export function calibration(camera, utime) {
   };
 }
 
-/** The board's outline as one sensor saw it. */
-export function boardLines(frame, pose, utime) {
+/** The board's outline as one sensor saw it. @param kind  of the sensor: "lidar" or "camera". */
+export function boardLines(kind, frame, pose, utime) {
   const line = {
     type: LINE_LOOP,
     pose: ORIGIN,
     thickness: 3,
     scale_invariant: true,
     points: pose.corners_m.map(xyz),
-    color: COLOURS[frame],
+    color: COLOURS[kind],
   };
   const entity = { timestamp: timestamp(utime), frame_id: frame, id: `board seen by ${frame}` };
   return { entities: [{ ...entity, lines: [line] }] };
 }
 
-export function cloud(sweep) {
+export function cloud(frame, sweep) {
   return {
     timestamp: timestamp(sweep.utime),
-    frame_id: "lidar",
+    frame_id: frame,
     pose: ORIGIN,
     point_stride: sweep.point_step,
     fields: sweep.fields.map(({ name, offset, datatype }) => ({
@@ -79,8 +79,8 @@ export function cloud(sweep) {
 }
 
 /** A CompressedImage or a RawImage: {type, message}. */
-export function image(picture) {
-  const common = { timestamp: timestamp(picture.utime), frame_id: "camera", data: picture.data };
+export function image(frame, picture) {
+  const common = { timestamp: timestamp(picture.utime), frame_id: frame, data: picture.data };
   if (picture.pixelformat === MJPEG || picture.pixelformat === PNG) {
     const format = picture.pixelformat === PNG ? "png" : "jpeg";
     return { type: "CompressedImage", message: { ...common, format } };

@@ -3,22 +3,11 @@
 
 import { spawn } from "node:child_process";
 import { once } from "node:events";
-import { existsSync } from "node:fs";
-import { fileURLToPath } from "node:url";
 import { UserError } from "./command.mjs";
 import { exactReader } from "./exact_reader.mjs";
+import { programPath } from "./program_path.mjs";
 
 const ANSWER_HEAD_BYTES = 5;
-
-/** Where the C++ programs are: VOQCAL_BIN, beside the tools of an installation, or as they are built. */
-export function programPath(name) {
-  const root = new URL("../../../", import.meta.url);
-  const folders = [new URL("bin/", root), new URL("build/release/bin/", root)].map((folder) => fileURLToPath(folder));
-  const paths = [process.env.VOQCAL_BIN && `${process.env.VOQCAL_BIN}/`, ...folders].filter(Boolean).map((folder) => folder + name);
-  const found = paths.find((path) => existsSync(path));
-  if (!found) throw new DecoderFailed(`packets are decoded by the program ${name}, which is not built yet (tools/build)`);
-  return found;
-}
 
 /** The decoder ended, or refuses the lidar: not the fault of one message. */
 export class DecoderFailed extends UserError {}
@@ -54,7 +43,9 @@ export class PacketDecoder {
   }
 
   #start() {
-    this.#child = spawn(programPath("decode_packets"), this.#args, { stdio: ["pipe", "pipe", "pipe"] });
+    const program = programPath("decode_packets");
+    if (!program) throw new DecoderFailed("packets are decoded by the program decode_packets, which is not built yet (tools/build)");
+    this.#child = spawn(program, this.#args, { stdio: ["pipe", "pipe", "pipe"] });
     this.#child.stdin.on("error", () => {}); // its end says why
     this.#child.stderr.on("data", (text) => (this.#errors += text));
     this.#read = exactReader(this.#child.stdout);

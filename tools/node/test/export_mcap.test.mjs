@@ -11,6 +11,7 @@ import { McapIndexedReader } from "@mcap/core";
 import { FileHandleReadable } from "@mcap/nodejs";
 import { LogWriter } from "../lib/lcm_log.mjs";
 import { voqcalTypes } from "../lib/lcm_types.mjs";
+import { programPath } from "../lib/program_path.mjs";
 
 const require = createRequire(import.meta.url);
 const protobuf = require("protobufjs");
@@ -68,7 +69,7 @@ const picture = (pixelformat, data, row_stride) => ({
 });
 
 function writeSession(name, image) {
-  mkdirSync(path(name));
+  mkdirSync(path(name), { recursive: true });
   writeFileSync(path(`${name}/result.json`), JSON.stringify(RESULT));
   const log = new LogWriter(path(`${name}/samples.lcm`));
   log.write(UTIME, "CALIB_SWEEP", types.encode("pointcloud2_t", sweep));
@@ -77,18 +78,21 @@ function writeSession(name, image) {
   log.finish();
 }
 
-/** Topic -> {type, message, logTime}, decoded by nothing but the schemas in the file. */
-async function readBack(file) {
+/** Topic -> the last {type, message, logTime} of it. */
+const readBack = async (file) => Object.fromEntries((await messagesOf(file)).map((each) => [each.topic, each]));
+
+/** {topic, type, message, logTime}, decoded by nothing but the schemas in the file. */
+async function messagesOf(file) {
   const handle = await open(file);
   const reader = await McapIndexedReader.Initialize({ readable: new FileHandleReadable(handle) });
-  const found = {};
+  const found = [];
   for await (const { channelId, logTime, data } of reader.readMessages()) {
     const channel = reader.channelsById.get(channelId);
     const schema = reader.schemasById.get(channel.schemaId);
     assert.equal(schema.encoding, "protobuf");
     const root = protobuf.Root.fromDescriptor(FileDescriptorSet.decode(schema.data));
     const type = root.lookupType(schema.name);
-    found[channel.topic] = { type: schema.name, message: type.toObject(type.decode(data)), logTime };
+    found.push({ topic: channel.topic, type: schema.name, message: type.toObject(type.decode(data)), logTime });
   }
   await handle.close();
   return found;
@@ -142,6 +146,57 @@ test("raw images keep their rows", async () => {
   const { type, message } = (await readBack(path("raw.mcap")))["/camera/image"];
   assert.equal(type, "foxglove.RawImage");
   assert.deepEqual([message.encoding, message.width, message.height, message.step], ["bgr8", 2, 1, 8]);
+});
+
+/** rig_extrinsics.yaml of two lidars and two cameras, as far as it is read. */
+function writeRigResult(name) {
+  const pose = (x) => `{quaternion_xyzw: [0, 0, 0.6, 0.8], translation_m: [${x}, 0, 0]}`;
+  const sensors = { top: "lidar", side: "lidar", left: "camera", right: "camera" };
+  const lines = Object.entries(sensors).map(([sensor, kind], i) => `  ${sensor}: {kind: ${kind}, T_reference_sensor: ${pose(i)}}\n`);
+  lines[0] = "  top: {kind: lidar, T_reference_sensor: {quaternion_xyzw: [0, 0, 0, 1], translation_m: [0, 0, 0]}}\n";
+  mkdirSync(path(name), { recursive: true });
+  const text = `rig: truck\nreference: top\nverdict: {grade: good}\nsensors:\n${lines.join("")}`;
+  writeFileSync(path(`${name}/rig_extrinsics.yaml`), text);
+}
+const ofPrograms = { skip: !programPath("export_extrinsic") && "the programs are not built" };
+
+test("a rig: every sensor's pose, each camera's lens, and what its pairs saw, once", ofPrograms, async () => {
+  writeRigResult("rig");
+  for (const pair of ["top_left", "side_left"]) writeSession(`rig/${pair}`, picture(1196444237, Buffer.from("a jpeg"), 0));
+  const out = execFileSync(program, [path("rig"), "--out", path("rig.mcap")], { encoding: "utf8" });
+  assert.match(out, /^right: its lens is in no pair's folder, so not written \(--rig RIG gives it\)\n2 samples\n/);
+  const messages = await messagesOf(path("rig.mcap"));
+  const poses = messages.filter(({ topic }) => topic === "/tf").map(({ message }) => message);
+  assert.deepEqual(poses.map((pose) => pose.child_frame_id), ["side", "left", "right"]);
+  for (const [i, pose] of poses.entries()) {
+    assert.equal(pose.parent_frame_id, "top");
+    assert.equal(pose.translation.x, i + 1);
+    assert.deepEqual([pose.rotation.z, pose.rotation.w], [0.6, 0.8]);
+  }
+  const topics = messages.map(({ topic }) => topic).filter((topic) => topic !== "/tf");
+  const wanted = ["/left/board", "/left/calibration", "/left/image", "/side/board", "/side/points", "/top/board", "/top/points"];
+  assert.deepEqual(topics.sort(), wanted);
+  const of = (wantedTopic) => messages.find(({ topic }) => topic === wantedTopic).message;
+  assert.equal(of("/left/image").frame_id, "left");
+  assert.equal(of("/side/points").frame_id, "side");
+  assert.equal(of("/top/board").entities[0].frame_id, "top");
+  assert.deepEqual([of("/left/calibration").frame_id, of("/left/calibration").K[0]], ["left", 50]);
+});
+
+test("a rig's result alone: poses, and the lenses of its rig file", ofPrograms, async () => {
+  writeRigResult("moved");
+  const lens = "lens_model: plumb_bob, width_px: 640, height_px: 480, cx_px: 320, cy_px: 240, distortion: [0.1, 0, 0, 0, 0]";
+  const camera = (fx) => `{camera: {${lens}, fx_px: ${fx}, fy_px: ${fx}}}`;
+  const board = "{width_m: 0.6, height_m: 0.8, square_m: 0.1, num_corners_x: 5, num_corners_y: 7}";
+  writeFileSync(path("truck.yaml"), `rig: truck\nboard: ${board}\nlidars: {top: {}, side: {}}\ncameras: {left: ${camera(400)}, right: ${camera(500)}}\n`);
+  execFileSync(program, [path("moved"), "--rig", path("truck.yaml"), "--out", path("moved.mcap")]);
+  const messages = await messagesOf(path("moved.mcap"));
+  assert.deepEqual(messages.map(({ topic }) => topic), ["/tf", "/tf", "/tf", "/left/calibration", "/right/calibration"]);
+  assert.equal(messages[4].message.distortion_model, "plumb_bob");
+  assert.deepEqual(messages[4].message.K, [500, 0, 320, 0, 500, 240, 0, 0, 1]);
+  assert.deepEqual(messages[4].message.D, [0.1, 0, 0, 0, 0]);
+  writeFileSync(path("moved/rig_extrinsics.yaml"), "rig: truck\n");
+  expectRefused([path("moved"), "--out", path("no.mcap")], path("moved/rig_extrinsics.yaml"));
 });
 
 test("the same session gives the same bytes", () => {

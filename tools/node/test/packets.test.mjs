@@ -10,7 +10,7 @@ import { after, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { LogWriter, readLog } from "../lib/lcm_log.mjs";
 import { voqcalTypes } from "../lib/lcm_types.mjs";
-import { programPath } from "../lib/packet_decoder.mjs";
+import { programPath } from "../lib/program_path.mjs";
 import { openRecording } from "../lib/recordings/open.mjs";
 import { writeDb3, writeMcap } from "./recording_writers.mjs";
 
@@ -21,14 +21,8 @@ const importRos = fileURLToPath(new URL("../../import_ros", import.meta.url));
 const realData = fileURLToPath(new URL("../../../../shared/data/packets/", import.meta.url));
 const types = voqcalTypes();
 
-function isBuilt() {
-  try {
-    return Boolean(programPath("decode_packets") && programPath("decode_lidar"));
-  } catch {
-    return false;
-  }
-}
-const options = { skip: !isBuilt() && "the programs are not built" };
+const isBuilt = programPath("decode_packets") && programPath("decode_lidar");
+const options = { skip: !isBuilt && "the programs are not built" };
 
 // ---- Captures: {timeUs, bytes} of each packet ------------------------------------------------------
 

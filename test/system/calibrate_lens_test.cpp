@@ -106,6 +106,46 @@ TEST_F(CalibrateLens, WritesNoCopyWhosePathsWouldBeOthers) {
   EXPECT_EQ(Run(log, {"--write", Path("beside.yaml")}).status, 0);
 }
 
+constexpr char kSeveralText[] =
+    "rig: truck  # of two cameras\n"
+    "board: {width_m: 0.61, height_m: 0.85, square_m: 0.095, num_corners_x: 5, num_corners_y: 7, "
+    "pattern_offset_x_m: 0.002}\n"
+    "lidars:\n"
+    "  top:\n"
+    "cameras:\n"
+    "  right:\n"
+    "    camera_driver: {folder: images}\n"
+    "  left:\n"
+    "    channels: {camera_image: CAMERA_IMAGE}\n"
+    "    camera:  # to be found\n"
+    "      lens_model: equidistant\n"
+    "# the end";
+
+TEST_F(CalibrateLens, WritesACameraOfSeveralIntoItsOwnSection) {
+  const std::string log = WriteLog(12, true);
+  const std::string file = folder_.Write("truck.yaml", kSeveralText);
+  rig_ = file + "#left";
+  const test::Outcome elsewhere = Run(log, {"--write", Path("elsewhere/new.yaml")});
+  EXPECT_THAT(
+      elsewhere.err,
+      HasSubstr("cameras.right.camera_driver.folder of the rig file would be another path"));
+  const test::Outcome outcome = Run(log, {"--write", Path("new.yaml")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string written = ReadWholeFile(Path("new.yaml"));
+  EXPECT_NEAR(LoadRig(Path("new.yaml") + "#left", SensorChoice::kCamera).camera.fx_px, 420, 2);
+
+  // Without the found camera it is the file that it was.
+  const std::size_t begin = written.find("      width_px: 640\n");
+  const std::size_t end = written.find("      lens_model: equidistant\n");
+  ASSERT_LT(begin, end);
+  EXPECT_EQ(written.substr(0, begin) + written.substr(end), kSeveralText);
+
+  rig_ = file + "#lefd";
+  EXPECT_THAT(Run(log, {"--write", Path("other.yaml")}).err, HasSubstr("did you mean left?"));
+  rig_ = file;
+  EXPECT_THAT(Run(log, {"--write", Path("other.yaml")}).err, HasSubstr("name a camera, as in"));
+}
+
 TEST_F(CalibrateLens, TakesARecordingOfRos) {
   const std::string log = WriteLog(12, true);
   const test::Outcome made =

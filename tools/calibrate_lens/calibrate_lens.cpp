@@ -109,13 +109,15 @@ std::optional<LensModel> ModelToFind(const LensArgs& args, const LensInRig& lens
   return LensModelFromString(args.lens_model);  // nothing: automatic
 }
 
-// Of a file with several, lines would have to be put under the right name.
-void RequireOneCamera(const std::filesystem::path& rig) {
-  const std::filesystem::path pair = PairsOfRig(rig).front();
-  if (PlaceOfRig(pair).names.empty()) return;
-  throw std::runtime_error(rig.string() +
-                           ": has its cameras by name: leave out --write, and put the section that "
-                           "is printed under the camera's name yourself");
+/// The rig file with the camera in it, in its section.
+void WriteRig(const Rig& rig, const CameraModel& camera, const std::filesystem::path& written) {
+  const bool is_by_name = !SensorsOfRig(rig.path).cameras.empty();
+  const std::string name = is_by_name ? rig.camera_name : "";
+  const std::string text = ReadWholeFile(PlaceOfRig(rig.path).file);
+  WriteFileAtomically(written, RigWithCamera(text, camera, name));
+  // Says what lines could not tell: a key written as "camera :", say.
+  LoadRig(written.string() + (is_by_name ? "#" + name : ""), SensorChoice::kCamera);
+  std::printf("written\n  %s\n", written.c_str());
 }
 
 /// Of a recording of ROS, an LCM log of its images, as long as this lives.
@@ -139,8 +141,7 @@ void CalibrateLensOf(const LensArgs& args) {
   LensInRig lens;
   const Rig rig = LoadRig(args.rig, &lens);
   if (!args.written.path.empty()) {
-    RequireOneCamera(args.rig);
-    RequireSamePaths(rig, ReadWholeFile(PlaceOfRig(args.rig).file), args.written.path);
+    RequireSamePaths(PlaceOfRig(args.rig).file, args.written.path);
     args.written.Prepare();
   }
   const SeenBoards seen = SeeBoards(rig, Recording(rig, args).log(), args.max_images);
@@ -162,10 +163,7 @@ void CalibrateLensOf(const LensArgs& args) {
   }
   const CameraModel camera = Rounded(calibration.best->fit.camera);
   std::printf("for the rig file\ncamera:\n%s", CameraYaml(camera, "  ").c_str());
-  if (args.written.path.empty()) return;
-  WriteFileAtomically(args.written.path, RigWithCamera(ReadWholeFile(args.rig), camera));
-  LoadRig(args.written.path);  // says what lines could not tell: a key written as "camera :", say
-  std::printf("written\n  %s\n", args.written.path.c_str());
+  if (!args.written.path.empty()) WriteRig(rig, camera, args.written.path);
 }
 
 }  // namespace
@@ -180,7 +178,10 @@ int main(int argc, char** argv) {
       "calibrate_lens");
   voqcal::LensArgs args;
   args.bag.has_images_only = true;
-  app.add_option("rig", args.rig, "The rig file (YAML): board and channels")->required();
+  app.add_option("rig",
+                 args.rig,
+                 "The rig file (YAML): board and channels; of one with cameras by name FILE#CAMERA")
+      ->required();
   auto* input = app.add_option_group("input", "One of:");
   input->add_option(
       "--log", args.log, "A recording (LCM log), a session's samples.lcm, or a folder of images");

@@ -1,44 +1,11 @@
 // dashboard_faults.mjs [FOLDER]: what the page says of each fault, at the size of a desktop and of a phone, upright and on its side. The session is
 // a script: what its server says is put into the page as a WebSocket would. Ends with 1 and a line for each thing that is
 // wrong. With FOLDER it leaves screenshots there. 77: no Chromium here.
-import { readFileSync } from "node:fs";
-import { createRequire } from "node:module";
 import { join } from "node:path";
-import { fileURLToPath } from "node:url";
 import { SIZES, demand, openBrowser, problems, say } from "./browser.mjs";
+import { openScriptedPage } from "./scripted_page.mjs";
 
 const [folder] = process.argv.slice(2);
-const require = createRequire(new URL("../../tools/node/package.json", import.meta.url));
-const pageFolder = fileURLToPath(new URL("../../modules/dashboard/page", import.meta.url));
-
-/** The page as bundle.mjs makes it, in memory: by name. */
-function pageFiles() {
-  const { outputFiles } = require("esbuild").buildSync({
-    entryPoints: [join(pageFolder, "src/main.ts")],
-    outfile: "/dashboard.js",
-    nodePaths: [fileURLToPath(new URL("../../tools/node/node_modules", import.meta.url))],
-    bundle: true,
-    format: "esm",
-    target: "es2022",
-    write: false,
-  });
-  const files = { "index.html": readFileSync(join(pageFolder, "index.html")) };
-  for (const { path, contents } of outputFiles) files[path.split("/").at(-1)] = Buffer.from(contents);
-  return files;
-}
-
-/** Runs in the page before its script: a server that says what the test puts into window.say. */
-function standInForTheServer() {
-  window.WebSocket = class {
-    static OPEN = 1;
-    readyState = 1;
-    constructor() {
-      window.say = (message) => this.onmessage({ data: JSON.stringify(message) });
-      setTimeout(() => this.onopen());
-    }
-    send() {}
-  };
-}
 
 const FLOWING = { lidar: "flows", camera: "flows", lidar_board: "flows", camera_board: "flows" };
 /** Lines of sight through the corners of the image. */
@@ -64,17 +31,8 @@ const FAULTS = [
 ];
 
 const { context, close } = await openBrowser();
-const page = await context.newPage();
-page.on("pageerror", (error) => problems.push(error.message));
-const files = pageFiles();
-await page.route("http://session.test/**", (route) => {
-  const name = new URL(route.request().url()).pathname.slice(1) || "index.html";
-  const type = { html: "text/html", js: "text/javascript", css: "text/css" }[name.split(".").at(-1)];
-  return files[name] ? route.fulfill({ body: files[name], contentType: type }) : route.fulfill({ status: 404 });
-});
-await page.addInitScript(standInForTheServer);
+const { page, tell, load } = await openScriptedPage(context);
 const text = (id) => page.locator(`#${id}`).innerText();
-const tell = (message) => page.evaluate((message) => window.say(message), message);
 const tellHealth = (faults, flows) =>
   tell({
     kind: "modules",
@@ -85,8 +43,7 @@ const tellHealth = (faults, flows) =>
   });
 
 async function begin() {
-  await page.goto("http://session.test/");
-  while (!(await page.evaluate(() => typeof window.say === "function"))) await page.waitForTimeout(20);
+  await load();
   await tell({ kind: "rig", name: "test_rig", camera: { width_px: 640, height_px: 400, border: BORDER } });
   await tell({ kind: "result", working_on: "", translation_m: [0.06, -0.1, -0.04], quaternion_xyzw: [0.5, -0.5, 0.5, 0.5] });
   await tell({ kind: "camera_board", utime: 1, miss: "", detail: "", outline_px: null, corners_px: [], warnings: [] });

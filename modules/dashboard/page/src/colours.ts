@@ -1,5 +1,8 @@
 // The colour of a range: red is near, blue is far, equal steps for equal ratios.
 
+/** Red, green and blue, 0 to 1. */
+export type Rgb = readonly [number, number, number];
+
 const NEAR_M = 1;
 const FAR_M = 30;
 const NUM_STEPS = 64;
@@ -30,8 +33,7 @@ const PIXELS = Uint32Array.from(STEPS, ([red, green, blue]) => {
   return (255 << 24) | (byte(blue) << 16) | (byte(green) << 8) | byte(red);
 });
 
-/** Red, green and blue, 0 to 1. */
-export function rangeColour(range_m: number): readonly [number, number, number] {
+export function rangeColour(range_m: number): Rgb {
   return STEPS[stepOf(range_m)]!;
 }
 
@@ -44,10 +46,9 @@ function stepOf(range_m: number): number {
   return Math.round(NUM_STEPS * rangeShare(range_m));
 }
 
-const probe = document.createElement("i");
-
 /** A colour of the style sheet, which knows whether it is dark: as "rgb(...)". */
 export function themeColour(name: string): string {
+  const probe = document.createElement("i");
   probe.style.color = `var(--${name})`;
   document.body.append(probe);
   const { color } = getComputedStyle(probe);

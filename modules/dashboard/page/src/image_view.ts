@@ -1,5 +1,6 @@
 // The live image with what was found in it.
 
+import type { Pixels } from "./cloud_colours.ts";
 import { rangePixel } from "./colours.ts";
 import { NOT_SEEN, type CloudFrame, type Guidance, type ImageFrame } from "./protocol.ts";
 
@@ -13,7 +14,7 @@ export class ImageView {
   private guidance: Guidance | null = null;
   private drawnCloud: CloudFrame | null = null;
   private cleared = 0;
-  private pixels: { of: ImageBitmap; data: ImageData } | null = null;
+  private pixels: { of: ImageBitmap; image: ImageData } | null = null;
   private readonly context: CanvasRenderingContext2D;
   private readonly points = document.createElement("canvas").getContext("2d")!;
 
@@ -50,27 +51,13 @@ export class ImageView {
     this.cloud = cloud;
   }
 
-  /** The image's colour (0 to 1) at a point of a sweep; null where it does not show it. */
-  colourOf({ pixels, utime }: CloudFrame, point: number): [number, number, number] | null {
+  /** What a sweep's points can take their colours from; null if it shows another moment. */
+  pixelsFor({ utime }: CloudFrame): Pixels | null {
     const { bitmap, frame } = this;
-    if (!pixels || !bitmap || !frame || Math.abs(utime - frame.utime) > MAX_COLOUR_OFFSET_US) return null;
-    const u = pixels[2 * point]!;
-    if (u === NOT_SEEN) return null;
-    const scale = bitmap.width / frame.width;
-    const clamp = (at: number, size: number) => Math.min(Math.max(Math.floor(scale * (at + 0.5)), 0), size - 1);
-    const at = 4 * (clamp(pixels[2 * point + 1]!, bitmap.height) * bitmap.width + clamp(u, bitmap.width));
-    const { data } = this.pixelsOf(bitmap);
-    return [data[at]! / 255, data[at + 1]! / 255, data[at + 2]! / 255];
-  }
-
-  /** Without what is drawn on it. */
-  private pixelsOf(bitmap: ImageBitmap): ImageData {
-    if (this.pixels?.of !== bitmap) {
-      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d", { willReadFrequently: true })!;
-      context.drawImage(bitmap, 0, 0);
-      this.pixels = { of: bitmap, data: context.getImageData(0, 0, bitmap.width, bitmap.height) };
-    }
-    return this.pixels.data;
+    if (!bitmap || !frame || Math.abs(utime - frame.utime) > MAX_COLOUR_OFFSET_US) return null;
+    if (this.pixels?.of !== bitmap) this.pixels = { of: bitmap, image: imageOf(bitmap) };
+    const { data, width, height } = this.pixels.image;
+    return { data, width, height, scale: width / frame.width };
   }
 
   /** Null: no order is given. */
@@ -147,6 +134,12 @@ export class ImageView {
     context.stroke();
     context.setLineDash([]);
   }
+}
+
+function imageOf(bitmap: ImageBitmap): ImageData {
+  const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d", { willReadFrequently: true })!;
+  context.drawImage(bitmap, 0, 0);
+  return context.getImageData(0, 0, bitmap.width, bitmap.height);
 }
 
 /** Thousands of small squares: written into the pixels they take a quarter of the time of as many fillRect. */

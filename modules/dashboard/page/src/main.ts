@@ -228,7 +228,9 @@ setInterval(() => {
   followPair();
 }, 500);
 const isColoured = byId<HTMLInputElement>("is-coloured");
-scene?.colourBy((cloud, point) => (isColoured.checked ? image.colourOf(cloud, point) : null));
+const chooseColours = () => scene?.colourBy((cloud) => (isColoured.checked ? image.pixelsFor(cloud) : null));
+isColoured.addEventListener("change", chooseColours);
+chooseColours();
 byId("follows").addEventListener("change", (event) => {
   choosePair((event.target as HTMLInputElement).checked ? null : (pair?.name ?? null));
 });

@@ -2,12 +2,16 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { rangeColour, themeColour } from "./colours.ts";
+import { cloudColours, type Pixels } from "./cloud_colours.ts";
+import { themeColour } from "./colours.ts";
 import { frustum, ground, groundHeight } from "./landmarks.ts";
 import type { CloudFrame, Guidance, LidarBoard, Point3, Result, Rig, Samples } from "./protocol.ts";
 
-/** Red, green and blue (0 to 1) of a point; null where the camera does not see it. */
-export type PixelColour = (cloud: CloudFrame, point: number) => readonly [number, number, number] | null;
+// Nothing here is lit: a colour is shown as it is given, as in the image beside.
+THREE.ColorManagement.enabled = false;
+
+/** The image whose colours a sweep is to have; null: it has those of its points' ranges. */
+export type ImageOf = (cloud: CloudFrame) => Pixels | null;
 
 const UP = new THREE.Vector3(0, 0, 1);
 /** What moves by itself is drawn no more often: phones have batteries. */
@@ -28,13 +32,15 @@ export class SceneView {
   private readonly sight = new THREE.Group();
   private readonly ground = ground();
   private border: Point3[] = [];
-  private pixelColour: PixelColour = () => null;
+  private cloud: CloudFrame | null = null;
+  private imageOf: ImageOf = () => null;
   private isAsked = false;
   private isInSight = false;
   private drawnAt = 0;
 
   constructor(private readonly holder: HTMLElement) {
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     holder.append(this.renderer.domElement);
     this.renderer.domElement.tabIndex = 0;
@@ -76,30 +82,34 @@ export class SceneView {
     this.replace(this.sight, isKnown ? [frustum(this.border, translation_m, quaternion_xyzw)] : []);
   }
 
-  /** From now on points have this colour, and that of their range where there is none. */
-  colourBy(pixelColour: PixelColour): void {
-    this.pixelColour = pixelColour;
+  /** From now on, and the sweep that is shown. */
+  colourBy(imageOf: ImageOf): void {
+    this.imageOf = imageOf;
+    if (!this.cloud) return;
+    this.paint(this.cloud);
+    this.draw();
   }
 
   showCloud(cloud: CloudFrame): void {
-    const { positions_m } = cloud;
-    const colours = new Float32Array(positions_m.length);
-    for (let i = 0; i < positions_m.length; i += 3) {
-      const range_m = Math.hypot(positions_m[i]!, positions_m[i + 1]!, positions_m[i + 2]!);
-      colours.set(this.pixelColour(cloud, i / 3) ?? rangeColour(range_m), i);
-    }
-    this.showGround(positions_m);
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(positions_m, 3));
-    geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+    this.cloud = cloud;
+    this.showGround(cloud.positions_m);
     this.points.geometry.dispose();
-    this.points.geometry = geometry;
+    this.points.geometry = new THREE.BufferGeometry();
+    this.points.geometry.setAttribute("position", new THREE.BufferAttribute(cloud.positions_m, 3));
+    this.paint(cloud);
     this.holder.dataset.utime = `${cloud.utime}`;
     this.draw();
   }
 
+  private paint(cloud: CloudFrame): void {
+    const { r, g, b } = new THREE.Color(themeColour("unseen"));
+    const colours = cloudColours(cloud, this.imageOf(cloud), [r, g, b]);
+    this.points.geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+  }
+
   /** Nothing of what was shown is left. */
   clear(): void {
+    this.cloud = null;
     this.points.geometry.dispose();
     this.points.geometry = new THREE.BufferGeometry();
     for (const group of [this.board, this.samples, this.ghost, this.sight]) this.replace(group, []);

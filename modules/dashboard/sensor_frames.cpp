@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/scene/points_in_sight.hpp"
 #include "images/jpeg.hpp"
 #include "messaging/convert_image.hpp"
 
@@ -44,18 +45,20 @@ cv::Mat Small(const image_t& image, int factor) {
 /// Every point with a return, or a part of them that no scan pattern of the lidar can favour: the
 /// multiples of the golden ratio spread evenly over [0, 1), and so do any of their subsequences by
 /// equal steps.
-std::vector<Eigen::Vector3f> Thinned(const PointCloud& cloud_lidar_m, int max_points) {
+/// @return which.
+std::vector<std::size_t> Thinned(const PointCloud& cloud_lidar_m, int max_points) {
   constexpr double kGoldenRatio = 0.6180339887498949;
   const double share = static_cast<double>(max_points) /
                        static_cast<double>(std::max<std::size_t>(cloud_lidar_m.points.size(), 1));
-  std::vector<Eigen::Vector3f> thinned;
+  std::vector<std::size_t> thinned;
   double phase = 0;
-  for (const LidarPoint& point : cloud_lidar_m.points) {
+  for (std::size_t i = 0; i < cloud_lidar_m.points.size(); ++i) {
     phase += kGoldenRatio;
     if (phase >= 1) phase -= 1;
     if (phase >= share) continue;
-    if (!point.position_m.allFinite() || point.position_m.isZero()) continue;
-    thinned.push_back(point.position_m);
+    const Eigen::Vector3f& position_m = cloud_lidar_m.points[i].position_m;
+    if (!position_m.allFinite() || position_m.isZero()) continue;
+    thinned.push_back(i);
   }
   return thinned;
 }
@@ -67,24 +70,17 @@ void AppendInt16(double value, std::string* bytes) {
 }
 
 /// Metres to a unit of int16, such that the farthest point fits.
-double ScaleOf(const std::vector<Eigen::Vector3f>& points_m) {
+double ScaleOf(const PointCloud& cloud_lidar_m, const std::vector<std::size_t>& shown) {
   float farthest_m = 1.0F;
-  for (const Eigen::Vector3f& point : points_m) {
-    farthest_m = std::max(farthest_m, point.cwiseAbs().maxCoeff());
+  for (const std::size_t i : shown) {
+    farthest_m = std::max(farthest_m, cloud_lidar_m.points[i].position_m.cwiseAbs().maxCoeff());
   }
   return static_cast<double>(farthest_m) / std::numeric_limits<std::int16_t>::max();
 }
 
-void AppendPixel(const Eigen::Vector3d& point_camera_m,
-                 const CameraModel& camera,
-                 std::string* bytes) {
-  Eigen::Vector2d pixel = Eigen::Vector2d::Constant(kNotSeen);
-  if (camera.IsInFront(point_camera_m)) {
-    const Eigen::Vector2d projected = camera.Project(point_camera_m);
-    if (camera.Contains(projected)) pixel = projected;
-  }
-  AppendInt16(pixel.x(), bytes);
-  AppendInt16(pixel.y(), bytes);
+void AppendPixel(const std::optional<Eigen::Vector2d>& pixel_px, std::string* bytes) {
+  AppendInt16(pixel_px ? pixel_px->x() : kNotSeen, bytes);
+  AppendInt16(pixel_px ? pixel_px->y() : kNotSeen, bytes);
 }
 
 }  // namespace
@@ -119,20 +115,21 @@ FramePtr CloudFrame(const PointCloud& cloud_lidar_m,
                     const std::optional<Eigen::Isometry3d>& T_camera_lidar,
                     const CameraModel& camera,
                     const DashboardOptions& options) {
-  const std::vector<Eigen::Vector3f> points = Thinned(cloud_lidar_m, options.max_cloud_points);
-  const double scale_m = ScaleOf(points);
+  const std::vector<std::size_t> shown = Thinned(cloud_lidar_m, options.max_cloud_points);
+  const double scale_m = ScaleOf(cloud_lidar_m, shown);
   std::string payload;
-  for (const Eigen::Vector3f& point : points) {
-    for (int i = 0; i < 3; ++i) AppendInt16(static_cast<double>(point[i]) / scale_m, &payload);
+  for (const std::size_t i : shown) {
+    for (const float coordinate_m : cloud_lidar_m.points[i].position_m) {
+      AppendInt16(static_cast<double>(coordinate_m) / scale_m, &payload);
+    }
   }
   if (T_camera_lidar) {
-    for (const Eigen::Vector3f& point : points) {
-      AppendPixel(*T_camera_lidar * point.cast<double>(), camera, &payload);
-    }
+    const auto pixels_px = PixelsInSight(cloud_lidar_m, camera, *T_camera_lidar);
+    for (const std::size_t i : shown) AppendPixel(pixels_px[i], &payload);
   }
   const Json header = {{"kind", ToString(Slot::kCloud)},
                        {"utime", utime},
-                       {"num_points", points.size()},
+                       {"num_points", shown.size()},
                        {"scale_m", scale_m},
                        {"has_pixels", T_camera_lidar.has_value()}};
   return BinaryFrame(header.dump(), payload);

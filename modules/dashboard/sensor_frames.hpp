@@ -32,7 +32,7 @@ PageImage ForPage(const image_t& image, const DashboardOptions& options);
 FramePtr ImageFrame(const PageImage& image, const std::string& board_json);
 
 /// A sweep for the page, thinned evenly over its scan lines, and where its points fall in the
-/// image.
+/// image: of the points that PixelsInSight says it shows.
 ///
 /// Payload: n x (x, y, z) as int16, in units of the header's scale_m, in the lidar frame; then, if
 /// `T_camera_lidar` is known, n x (u, v) as int16, pixels of the original image, or -32768 twice

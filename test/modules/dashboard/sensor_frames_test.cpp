@@ -224,5 +224,22 @@ TEST(CloudFrame, ProjectsByTheCameraModel) {
   EXPECT_EQ(numbers[9], -32768);
 }
 
+TEST(CloudFrame, HasNoPixelOfAPointThatIsBehindOthers) {
+  const CameraModel camera = test::TestCamera();
+  const Eigen::Isometry3d T_camera_lidar = test::TestExtrinsic();
+  PointCloud sweep;
+  for (const double x_m : {-0.05, 0.0, 0.05}) {
+    const Eigen::Vector3d point_camera_m =
+        x_m == 0 ? Eigen::Vector3d(0, 0, 6) : Eigen::Vector3d(x_m, 0, 2);
+    sweep.points.emplace_back().position_m =
+        (T_camera_lidar.inverse() * point_camera_m).cast<float>();
+  }
+  const auto numbers = Split(CloudFrame(sweep, 17, T_camera_lidar, camera, {})).Numbers();
+  ASSERT_EQ(numbers.size(), 3U * 5U);
+  EXPECT_NE(numbers[9], -32768);
+  EXPECT_EQ(numbers[11], -32768);
+  EXPECT_NE(numbers[13], -32768);
+}
+
 }  // namespace
 }  // namespace voqcal

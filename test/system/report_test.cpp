@@ -155,6 +155,12 @@ TEST_F(SimulatedReport, HasAPictureOfEachSample) {
   }
 }
 
+TEST_F(SimulatedReport, HasOneCloudInTheImagesColours) {
+  const std::string page = ReadWholeFile(Path("out/report.html"));
+  EXPECT_THAT(page, HasSubstr("the lidar's points in the image's colours by the refined"));
+  EXPECT_THAT(page, HasSubstr("is nearest to the middle distance"));
+}
+
 TEST_F(SimulatedReport, JsonSaysWhatTheResultSays) {
   const auto json = nlohmann::json::parse(ReadWholeFile(Path("out/result.json")));
   const std::string yaml = ReadWholeFile(Path("out/extrinsic.yaml"));

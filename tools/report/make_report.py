@@ -125,6 +125,15 @@ def poses(samples, folder):
     return [{**sample, "pictures": {kind: picture(folder, sample, kind) for kind in kinds}} for sample in samples]
 
 
+def coloured(samples, folder):
+    """Of the one sample that has them, the pictures of its points in the image's colours."""
+    for sample in samples:
+        pictures = [picture(folder, sample, kind) for kind in ("coloured", "miscoloured")]
+        if all(pictures):
+            return {"id": sample["id"], "range_m": sample["range_m"], "right": pictures[0], "wrong": pictures[1]}
+    return None
+
+
 def kind_of(reason):
     """A reason without its details: "lidar: board bent" of "lidar: board bent by 481 mm"."""
     parts = reason.split(": ")
@@ -221,6 +230,7 @@ def report(data, overlays, template):
         voq=voq_figure(data["sets"]),
         cells=cells_figure(samples, data["rig"]["camera"]),
         range_svg=range_figure(samples),
+        coloured=coloured(samples, overlays),
         poses=poses(samples, overlays),
         range_key=data["range_colours"],
         frames=rejected_frames(data["frames"]),

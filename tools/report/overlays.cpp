@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <vector>
@@ -14,10 +15,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibrate/picture_grounds.hpp"
+#include "core/units.hpp"
 #include "images/jpeg.hpp"
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/session_scenes.hpp"
+#include "report/middle_scene.hpp"
+#include "report/side_view.hpp"
 
 namespace voqcal {
 namespace {
@@ -141,6 +145,48 @@ void WritePicture(const cv::Mat& picture, const std::filesystem::path& path) {
   }
 }
 
+/// "folder/0012_scene.jpg"
+std::filesystem::path PathOf(const std::filesystem::path& folder,
+                             std::int64_t sample_id,
+                             const char* kind) {
+  char name[48];
+  std::snprintf(name, sizeof(name), "%04lld_%s.jpg", static_cast<long long>(sample_id), kind);
+  return folder / name;
+}
+
+bool IsUsed(const BoardSample& sample, const CalibrationResult& result) {
+  const auto& ids = result.used_ids;
+  return std::find(ids.begin(), ids.end(), sample.id) != ids.end();
+}
+
+std::vector<BoardSample> UsedOf(const std::vector<BoardSample>& samples,
+                                const CalibrationResult& result) {
+  std::vector<BoardSample> used;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(used), [&](const auto& sample) {
+    return IsUsed(sample, result);
+  });
+  return used;
+}
+
+/// As a calibration may be that is wrong.
+Eigen::Isometry3d Turned(const Eigen::Isometry3d& T_camera_lidar) {
+  return Eigen::AngleAxisd(3.0 * kRadPerDeg, Eigen::Vector3d::UnitY()) * T_camera_lidar;
+}
+
+void WriteSideViews(const MiddleScene::Scene& scene,
+                    const CameraModel& camera,
+                    const Eigen::Isometry3d& T_camera_lidar,
+                    const std::filesystem::path& folder) {
+  const BoardSample& sample = *scene.sample;
+  const Eigen::Isometry3d T_view_lidar = SideViewFromLidar(sample.lidar.pose, T_camera_lidar);
+  const auto write = [&](const char* kind, const Eigen::Isometry3d& T_colours_lidar) {
+    const auto points = PointsInColour(scene.sweep_lidar_m, scene.image, camera, T_colours_lidar);
+    WritePicture(DrawSideView(points, T_view_lidar), PathOf(folder, sample.id, kind));
+  };
+  write("coloured", T_camera_lidar);
+  write("miscoloured", Turned(T_camera_lidar));
+}
+
 }  // namespace
 
 cv::Vec3b RangeColourBgr(double range_m) {
@@ -179,6 +225,7 @@ void WriteOverlays(const Rig& rig,
   std::map<std::int64_t, const BoardSample*> samples;
   const std::vector<BoardSample> all = run.SamplesAsChosen();
   for (const BoardSample& sample : all) samples[sample.id] = &sample;
+  MiddleScene middle(UsedOf(all, result));
   const auto is_kept = [&](const SessionScene& scene) {
     // Others were discarded later, or are of a log that was joined to this.
     const auto sample = samples.find(scene.sample_id);
@@ -190,10 +237,9 @@ void WriteOverlays(const Rig& rig,
     const PictureGrounds grounds =
         kept != nullptr ? *kept : GroundsOf(sample, FromMessage(messages.image), rig.camera);
     const PointCloud sweep_lidar_m = FromMessage(messages.sweep);
-    char id[24];
-    std::snprintf(id, sizeof(id), "%04lld", static_cast<long long>(messages.sample_id));
+    if (IsUsed(sample, result)) middle.Offer(sample, grounds.scene, sweep_lidar_m);
     const auto write = [&](const char* kind, const cv::Mat& picture) {
-      if (!picture.empty()) WritePicture(picture, folder / (std::string(id) + kind + ".jpg"));
+      if (!picture.empty()) WritePicture(picture, PathOf(folder, sample.id, kind));
     };
     const auto points_by = [&](const Eigen::Isometry3d& T_camera_lidar) {
       return PointsInImage(sweep_lidar_m, rig.camera, T_camera_lidar);
@@ -204,10 +250,13 @@ void WriteOverlays(const Rig& rig,
     const Eigen::Isometry3d& T_before = result.averaged.T_camera_lidar;
     const Eigen::Isometry3d& T_after = result.T_camera_lidar;
     const std::vector<SeenPoint> points_after = points_by(T_after);
-    write("_scene", SceneWith(grounds, points_after));
-    write("_before", BoardWith(grounds, points_by(T_before), outline_by(T_before)));
-    write("_after", BoardWith(grounds, points_after, outline_by(T_after)));
+    write("scene", SceneWith(grounds, points_after));
+    write("before", BoardWith(grounds, points_by(T_before), outline_by(T_before)));
+    write("after", BoardWith(grounds, points_after, outline_by(T_after)));
   });
+  if (middle.Chosen()) {
+    WriteSideViews(*middle.Chosen(), rig.camera, result.T_camera_lidar, folder);
+  }
 }
 
 }  // namespace voqcal

@@ -1,0 +1,80 @@
+#include "report/side_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/units.hpp"
+#include "report/middle_scene.hpp"
+
+namespace voqcal {
+namespace {
+
+const cv::Vec3b kRed(0, 0, 200);
+const cv::Vec3b kBlue(200, 0, 0);
+
+/// A camera and a lidar that are one: x right, y down, z forward.
+BoardPose BoardTurned(double turn_deg) {
+  BoardPose board;
+  board.centre_m = {0, 0, 3};
+  board.normal = {std::sin(turn_deg * kRadPerDeg), 0, -std::cos(turn_deg * kRadPerDeg)};
+  return board;
+}
+
+TEST(SideView, LooksAtTheBoardFromAboveOnTheSideOfItsFace) {
+  for (const double turn_deg : {-30.0, 30.0}) {
+    const Eigen::Isometry3d T_view_camera =
+        SideViewFromLidar(BoardTurned(turn_deg), Eigen::Isometry3d::Identity());
+    EXPECT_TRUE((T_view_camera * Eigen::Vector3d(0, 0, 3)).isApprox(Eigen::Vector3d(0, 0, 3)));
+    const Eigen::Vector3d eye_m = T_view_camera.inverse().translation();
+    EXPECT_NEAR(eye_m.y(), -3 * std::sin(20 * kRadPerDeg), 1e-9);
+    EXPECT_NEAR(
+        std::atan2(eye_m.x(), 3 - eye_m.z()) * kDegPerRad, std::copysign(35, turn_deg), 1e-9);
+  }
+}
+
+/// The colour where the board's centre is.
+cv::Vec3b MiddleOf(const std::vector<ColouredPoint>& points) {
+  return DrawSideView(points, Eigen::Isometry3d::Identity()).at<cv::Vec3b>(270, 360);
+}
+
+TEST(SideView, ShowsWhatIsNearerInWhateverOrder) {
+  std::vector<ColouredPoint> points = {{{0, 0, 2}, kRed}, {{0, 0, 5}, kBlue}, {{0, 0, -2}, kBlue}};
+  EXPECT_EQ(MiddleOf(points), kRed);
+  std::reverse(points.begin(), points.end());
+  EXPECT_EQ(MiddleOf(points), kRed);
+}
+
+// Patches are 38 mrad high: the two overlap. Half-way between them is 5 mm at 2 m, 1.6 px.
+TEST(SideView, GivesEachPointOfASurfaceWhatIsNearestToIt) {
+  const std::vector<ColouredPoint> points = {{{0, 0, 2}, kRed}, {{0, 0.01, 2}, kBlue}};
+  const cv::Mat picture = DrawSideView(points, Eigen::Isometry3d::Identity());
+  EXPECT_EQ(picture.at<cv::Vec3b>(270 - 4, 360), kRed);
+  EXPECT_EQ(picture.at<cv::Vec3b>(270 + 7, 360), kBlue);
+}
+
+/// Which is chosen of samples at these distances, of those whose numbers are offered.
+std::int64_t ChosenId(const std::vector<double>& distances_m,
+                      const std::vector<std::size_t>& offered) {
+  std::vector<BoardSample> samples(distances_m.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i].id = static_cast<std::int64_t>(i);
+    samples[i].lidar.pose.centre_m = {distances_m[i], 0, 0};
+  }
+  MiddleScene middle(samples);
+  for (const std::size_t i : offered) middle.Offer(samples[i], cv::Mat(), PointCloud());
+  return middle.Chosen() ? middle.Chosen()->sample->id : -1;
+}
+
+TEST(MiddleScene, IsOfTheMiddleDistanceWhicheverComesFirst) {
+  const std::vector<double> distances_m = {9, 2, 3, 1, 2.5};
+  EXPECT_EQ(ChosenId(distances_m, {0, 1, 2, 3, 4}), 4);
+  EXPECT_EQ(ChosenId(distances_m, {4, 3, 2, 1, 0}), 4);
+  EXPECT_EQ(ChosenId(distances_m, {0, 1, 2, 3}), 1);  // 2 and 3 m are as near: the first
+  EXPECT_EQ(ChosenId(distances_m, {3, 2, 1, 0}), 1);
+  EXPECT_EQ(ChosenId(distances_m, {}), -1);
+}
+
+}  // namespace
+}  // namespace voqcal

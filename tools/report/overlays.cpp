@@ -20,8 +20,8 @@
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/session_scenes.hpp"
+#include "report/aside_view.hpp"
 #include "report/middle_scene.hpp"
-#include "report/side_view.hpp"
 
 namespace voqcal {
 namespace {
@@ -173,15 +173,15 @@ Eigen::Isometry3d Turned(const Eigen::Isometry3d& T_camera_lidar) {
   return Eigen::AngleAxisd(3.0 * kRadPerDeg, Eigen::Vector3d::UnitY()) * T_camera_lidar;
 }
 
-void WriteSideViews(const MiddleScene::Scene& scene,
-                    const CameraModel& camera,
-                    const Eigen::Isometry3d& T_camera_lidar,
-                    const std::filesystem::path& folder) {
+void WriteAsideViews(const MiddleScene::Scene& scene,
+                     const CameraModel& camera,
+                     const Eigen::Isometry3d& T_camera_lidar,
+                     const std::filesystem::path& folder) {
   const BoardSample& sample = *scene.sample;
-  const Eigen::Isometry3d T_view_lidar = SideViewFromLidar(sample.lidar.pose, T_camera_lidar);
+  const AsideView view = AsideViewOf(sample.lidar.pose, T_camera_lidar);
   const auto write = [&](const char* kind, const Eigen::Isometry3d& T_colours_lidar) {
     const auto points = PointsInColour(scene.sweep_lidar_m, scene.image, camera, T_colours_lidar);
-    WritePicture(DrawSideView(points, T_view_lidar), PathOf(folder, sample.id, kind));
+    WritePicture(DrawAsideView(points, view), PathOf(folder, sample.id, kind));
   };
   write("coloured", T_camera_lidar);
   write("miscoloured", Turned(T_camera_lidar));
@@ -255,7 +255,7 @@ void WriteOverlays(const Rig& rig,
     write("after", BoardWith(grounds, points_after, outline_by(T_after)));
   });
   if (middle.Chosen()) {
-    WriteSideViews(*middle.Chosen(), rig.camera, result.T_camera_lidar, folder);
+    WriteAsideViews(*middle.Chosen(), rig.camera, result.T_camera_lidar, folder);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "report/side_view.hpp"
+#include "report/aside_view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,37 +19,47 @@ BoardPose BoardTurned(double turn_deg) {
   BoardPose board;
   board.centre_m = {0, 0, 3};
   board.normal = {std::sin(turn_deg * kRadPerDeg), 0, -std::cos(turn_deg * kRadPerDeg)};
+  board.corners_m.fill(board.centre_m + Eigen::Vector3d(0, 0.5, 0));
   return board;
 }
 
-TEST(SideView, LooksAtTheBoardFromAboveOnTheSideOfItsFace) {
+TEST(AsideView, LooksAtTheBoardFromAboveOnTheSideOfItsFace) {
   for (const double turn_deg : {-30.0, 30.0}) {
-    const Eigen::Isometry3d T_view_camera =
-        SideViewFromLidar(BoardTurned(turn_deg), Eigen::Isometry3d::Identity());
-    EXPECT_TRUE((T_view_camera * Eigen::Vector3d(0, 0, 3)).isApprox(Eigen::Vector3d(0, 0, 3)));
-    const Eigen::Vector3d eye_m = T_view_camera.inverse().translation();
+    const auto view = AsideViewOf(BoardTurned(turn_deg), Eigen::Isometry3d::Identity());
+    const Eigen::Vector3d centre_view_m = view.T_view_lidar * Eigen::Vector3d(0, 0, 3);
+    EXPECT_TRUE(centre_view_m.isApprox(Eigen::Vector3d(0, 0, 3)));
+    EXPECT_NEAR(view.focal_px * 0.5 / 3, 130, 1e-9);
+    const Eigen::Vector3d eye_m = view.T_view_lidar.inverse().translation();
     EXPECT_NEAR(eye_m.y(), -3 * std::sin(20 * kRadPerDeg), 1e-9);
     EXPECT_NEAR(
         std::atan2(eye_m.x(), 3 - eye_m.z()) * kDegPerRad, std::copysign(35, turn_deg), 1e-9);
   }
 }
 
-/// The colour where the board's centre is.
-cv::Vec3b MiddleOf(const std::vector<ColouredPoint>& points) {
-  return DrawSideView(points, Eigen::Isometry3d::Identity()).at<cv::Vec3b>(270, 360);
+/// Along the lidar's x axis.
+AsideView ViewAhead() {
+  AsideView view{Eigen::Isometry3d::Identity(), 640};
+  view.T_view_lidar.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return view;
 }
 
-TEST(SideView, ShowsWhatIsNearerInWhateverOrder) {
-  std::vector<ColouredPoint> points = {{{0, 0, 2}, kRed}, {{0, 0, 5}, kBlue}, {{0, 0, -2}, kBlue}};
+/// The colour where the view's z axis goes.
+cv::Vec3b MiddleOf(const std::vector<ColouredPoint>& points) {
+  return DrawAsideView(points, ViewAhead()).at<cv::Vec3b>(270, 360);
+}
+
+TEST(AsideView, ShowsWhatIsNearerInWhateverOrder) {
+  std::vector<ColouredPoint> points = {{{2, 0, 0}, kRed}, {{5, 0, 0}, kBlue}, {{-2, 0, 0}, kBlue}};
   EXPECT_EQ(MiddleOf(points), kRed);
   std::reverse(points.begin(), points.end());
   EXPECT_EQ(MiddleOf(points), kRed);
 }
 
-// Patches are 38 mrad high: the two overlap. Half-way between them is 5 mm at 2 m, 1.6 px.
-TEST(SideView, GivesEachPointOfASurfaceWhatIsNearestToIt) {
-  const std::vector<ColouredPoint> points = {{{0, 0, 2}, kRed}, {{0, 0.01, 2}, kBlue}};
-  const cv::Mat picture = DrawSideView(points, Eigen::Isometry3d::Identity());
+// Patches are 38 mrad across scan lines, 24 px: the two overlap. Half-way between them is 5 mm at 2
+// m, 1.6 px.
+TEST(AsideView, GivesEachPointOfASurfaceWhatIsNearestToIt) {
+  const std::vector<ColouredPoint> points = {{{2, 0, 0}, kRed}, {{2, 0, -0.01}, kBlue}};
+  const cv::Mat picture = DrawAsideView(points, ViewAhead());
   EXPECT_EQ(picture.at<cv::Vec3b>(270 - 4, 360), kRed);
   EXPECT_EQ(picture.at<cv::Vec3b>(270 + 7, 360), kBlue);
 }

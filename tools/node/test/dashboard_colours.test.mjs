@@ -38,10 +38,14 @@ test("a point that the camera does not see is dim, not of its range's colour", (
   assert.deepEqual(shown, [UNSEEN, [0, 1, 0], UNSEEN, [1, 0, 0]]);
 });
 
-test("without an image, or an extrinsic, points have the colours of their ranges", () => {
-  const pixels = [0, 0, 2, 1, 1, 3, 3, 2];
-  const [near, , , far] = colours(cloud(pixels), null, UNSEEN);
+test("by range, a point has the colour of its range", () => {
+  const [near, , , far] = colours(cloud([0, 0, 2, 1, 1, 3, 3, 2]), "range", UNSEEN);
   assert.ok(near[0] > 0.9 && near[2] < 0.2, `at 1 m: ${near}`);
   assert.notDeepEqual(near, far);
-  assert.deepEqual(colours(cloud(null), IMAGE, UNSEEN), colours(cloud(pixels), null, UNSEEN));
+});
+
+test("without an image, or an extrinsic, all points are dim", () => {
+  const dim = [UNSEEN, UNSEEN, UNSEEN, UNSEEN];
+  assert.deepEqual(colours(cloud([0, 0, 2, 1, 1, 3, 3, 2]), null, UNSEEN), dim);
+  assert.deepEqual(colours(cloud(null), IMAGE, UNSEEN), dim);
 });

@@ -13,15 +13,18 @@ export interface Pixels {
   scale: number;
 }
 
-/** Red, green and blue of each point: of its range, or of the image, and then `unseen` where the camera does not see it. */
-export function cloudColours(cloud: CloudFrame, image: Pixels | null, unseen: Rgb): Float32Array {
+/** What points take their colours from; null: from an image that is not there. */
+export type ColourSource = "range" | Pixels | null;
+
+/** Red, green and blue of each point: `unseen` where it is to have the image's, and that does not show it. */
+export function cloudColours(cloud: CloudFrame, source: ColourSource, unseen: Rgb): Float32Array {
   const { positions_m, pixels } = cloud;
   const colours = new Float32Array(positions_m.length);
   for (let i = 0; i < positions_m.length / 3; ++i) {
     const range_m = Math.hypot(positions_m[3 * i]!, positions_m[3 * i + 1]!, positions_m[3 * i + 2]!);
-    const isOfImage = image && pixels;
-    const colour = isOfImage ? (colourAt(image, pixels[2 * i]!, pixels[2 * i + 1]!) ?? unseen) : rangeColour(range_m);
-    colours.set(colour, 3 * i);
+    const colour =
+      source === "range" ? rangeColour(range_m) : source && pixels && colourAt(source, pixels[2 * i]!, pixels[2 * i + 1]!);
+    colours.set(colour ?? unseen, 3 * i);
   }
   return colours;
 }

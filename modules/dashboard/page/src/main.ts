@@ -228,7 +228,7 @@ setInterval(() => {
   followPair();
 }, 500);
 const isColoured = byId<HTMLInputElement>("is-coloured");
-const chooseColours = () => scene?.colourBy((cloud) => (isColoured.checked ? image.pixelsFor(cloud) : null));
+const chooseColours = () => scene?.colourBy((cloud) => (isColoured.checked ? image.pixelsFor(cloud) : "range"));
 isColoured.addEventListener("change", chooseColours);
 chooseColours();
 byId("follows").addEventListener("change", (event) => {

@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { cloudColours, type Pixels } from "./cloud_colours.ts";
+import { cloudColours, type ColourSource } from "./cloud_colours.ts";
 import { themeColour } from "./colours.ts";
 import { frustum, ground, groundHeight } from "./landmarks.ts";
 import type { CloudFrame, Guidance, LidarBoard, Point3, Result, Rig, Samples } from "./protocol.ts";
@@ -10,8 +10,8 @@ import type { CloudFrame, Guidance, LidarBoard, Point3, Result, Rig, Samples } f
 // Nothing here is lit: a colour is shown as it is given, as in the image beside.
 THREE.ColorManagement.enabled = false;
 
-/** The image whose colours a sweep is to have; null: it has those of its points' ranges. */
-export type ImageOf = (cloud: CloudFrame) => Pixels | null;
+/** Where the colours of a sweep come from. */
+export type SourceOf = (cloud: CloudFrame) => ColourSource;
 
 const UP = new THREE.Vector3(0, 0, 1);
 /** What moves by itself is drawn no more often: phones have batteries. */
@@ -33,7 +33,7 @@ export class SceneView {
   private readonly ground = ground();
   private border: Point3[] = [];
   private cloud: CloudFrame | null = null;
-  private imageOf: ImageOf = () => null;
+  private sourceOf: SourceOf = () => "range";
   private isAsked = false;
   private isInSight = false;
   private drawnAt = 0;
@@ -83,8 +83,8 @@ export class SceneView {
   }
 
   /** From now on, and the sweep that is shown. */
-  colourBy(imageOf: ImageOf): void {
-    this.imageOf = imageOf;
+  colourBy(sourceOf: SourceOf): void {
+    this.sourceOf = sourceOf;
     if (!this.cloud) return;
     this.paint(this.cloud);
     this.draw();
@@ -103,7 +103,7 @@ export class SceneView {
 
   private paint(cloud: CloudFrame): void {
     const { r, g, b } = new THREE.Color(themeColour("unseen"));
-    const colours = cloudColours(cloud, this.imageOf(cloud), [r, g, b]);
+    const colours = cloudColours(cloud, this.sourceOf(cloud), [r, g, b]);
     this.points.geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
   }
 

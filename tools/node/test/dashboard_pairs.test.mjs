@@ -30,6 +30,16 @@ test("the page does not turn to and fro, nor away from a sample that was just ta
   assert.equal(wanted(choice, "roof_rear", "roof_front", false, 10_999), "roof_rear");
 });
 
+test("samples that go on coming do not hold the page for ever while another pair is next", () => {
+  const choice = new PairChoice(null);
+  for (let nowMs = 0; nowMs < 10_000; nowMs += 2000) {
+    choice.hold(nowMs);
+    assert.equal(wanted(choice, "roof_rear", "roof_front", false, nowMs), "roof_front");
+  }
+  choice.hold(10_000);
+  assert.equal(wanted(choice, "roof_rear", "roof_front", false, 10_000), "roof_rear");
+});
+
 test("the page does not turn while a question is open or a command waits for its answer", () => {
   const choice = new PairChoice(null);
   assert.equal(wanted(choice, "roof_rear", "roof_front", true, 1e6), "roof_front");

@@ -19,10 +19,14 @@ export function pairOfHash(hash: string): string | null {
 
 /** A pair that the page turned to, or that a sample was taken of, is not taken away at once: time to see it and to discard. */
 const HOLD_MS = 5000;
+/** But where another is next, samples that go on coming do not hold it for ever. */
+const MOST_HOLD_MS = 2 * HOLD_MS;
 
 /** The operator's own choice, which stays (over a reload too: it is the address's fragment); without one that which is next. */
 export class PairChoice {
   private heldUntilMs = 0;
+  /** Since when another than the shown one is next. */
+  private otherSinceMs: number | null = null;
 
   constructor(private own: string | null) {}
 
@@ -48,7 +52,14 @@ export class PairChoice {
     const has = (name: string | null) => pairs.some((row) => row.name === name);
     if (has(this.own)) return this.own!;
     this.own = null; // of another rig
-    if (has(shown) && (!has(next) || shown === next || isBusy || nowMs < this.heldUntilMs)) return shown!;
+    if (has(shown) && (!has(next) || shown === next)) {
+      this.otherSinceMs = null;
+      return shown!;
+    }
+    this.otherSinceMs ??= nowMs;
+    const isHeld = nowMs < Math.min(this.heldUntilMs, this.otherSinceMs + MOST_HOLD_MS);
+    if (has(shown) && (isBusy || isHeld)) return shown!;
+    this.otherSinceMs = null;
     if (has(shown)) this.hold(nowMs);
     return has(next) ? next : pairs[0]!.name;
   }

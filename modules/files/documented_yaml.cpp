@@ -48,6 +48,7 @@ std::string Commented(const std::string& line,
                       const std::string& meaning) {
   const std::size_t column = std::max(kColumn, line.size() + 2);
   const Lines beside = Wrapped(meaning, kWidth - column - 2);
+  if (beside.empty()) return line + "\n";
   std::string text;
   if (column > kMaxColumn || beside.size() > kMaxBeside) {
     for (const std::string& each : Wrapped(meaning, kWidth - indent.size() - 2)) {

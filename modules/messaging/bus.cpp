@@ -137,6 +137,7 @@ void Bus::Impl::Deliver(const Subscription& subscription,
 
 bool Bus::Impl::IsForeign(const std::string& channel, const std::string& other_session) {
   if (MayBeOf(session, other_session)) return false;
+  ++counts[channel].num_foreign;
   if (foreign_sessions.insert(other_session).second) {
     spdlog::warn(
         "{}: what session {} says is not taken; this one is {}", channel, other_session, session);
@@ -152,15 +153,9 @@ void Bus::Impl::CountMalformed(const std::string& channel, const std::string& pr
   spdlog::warn("{}: malformed message skipped: {} (later ones are only counted)", channel, problem);
 }
 
-/// A number that is not above the last one is a sender that started anew (or a recording played
-/// again), or one that does not number its messages; neither is a loss.
 void Bus::Impl::CountLosses(const std::string& channel, std::int64_t sequence) {
   std::optional<std::int64_t>& last = memories[channel].last_sequence;
-  if (last && sequence > *last) {
-    const auto gap = static_cast<std::uint64_t>(sequence) - static_cast<std::uint64_t>(*last) - 1;
-    constexpr std::uint64_t kMaxGap = std::numeric_limits<std::uint32_t>::max();
-    counts[channel].num_lost += static_cast<std::int64_t>(std::min(gap, kMaxGap));
-  }
+  if (last) counts[channel].num_lost += NumLostBetween(*last, sequence);
   last = sequence;
 }
 

@@ -29,6 +29,7 @@ struct ChannelCounts {
   std::int64_t num_lost = 0;
   std::int64_t num_malformed =
       0;  ///< Could not be decoded; reported once a channel, counted always.
+  std::int64_t num_foreign = 0;  ///< Of another session, and not taken.
 };
 
 /// The one way to LCM. Hides its traps: buffer sizes, EINTR, exceptions in handlers, queue depths,
@@ -45,8 +46,8 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// From now on what is published names this session (NameSession), and what names another is not
-  /// taken (MayBeOf), of which the first is warned of. A bus without a session takes all.
+  /// From now on what is published names this session (HasSession), and what names another is not
+  /// taken (MayBeOf): counted, and the first warned of. A bus without a session takes all.
   void SetSession(const std::string& session);
 
   /// Calls `handler` with each message of `channel`, from HandleOnce. Message is an lcm-gen type.

@@ -56,7 +56,15 @@ void Bus::Subscribe(const std::string& channel,
 
 template <typename Message>
 void Bus::Publish(const std::string& channel, const Message& message) {
-  const std::vector<std::uint8_t> bytes = EncodeMessage(OfSession(message, session()));
+  std::vector<std::uint8_t> bytes;
+  if constexpr (HasSession<Message>::value) {
+    if (!session().empty() && message.session != session()) {
+      Message named = message;
+      named.session = session();
+      bytes = EncodeMessage(named);
+    }
+  }
+  if (bytes.empty()) bytes = EncodeMessage(message);
   if (bytes.empty()) {
     CountPublishFailure(channel, std::string("cannot encode ") + Message::getTypeName());
     return;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -31,6 +33,16 @@ std::optional<std::int64_t> SequenceOf(const Message& message) {
   } else {
     return std::nullopt;
   }
+}
+
+/// How many messages were lost before the one numbered `sequence`, after the one numbered `last`. A
+/// number that is not above the last one is a sender that started anew (or a recording played
+/// again), or one that does not number its messages; neither is a loss.
+inline std::int64_t NumLostBetween(std::int64_t last, std::int64_t sequence) {
+  if (sequence <= last) return 0;
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  const auto gap = static_cast<std::uint64_t>(sequence) - static_cast<std::uint64_t>(last) - 1;
+  return static_cast<std::int64_t>(std::min(gap, kMost));
 }
 
 /// Every module counts its own heartbeats on one shared channel, so gaps there mean nothing.

@@ -36,16 +36,4 @@ std::string SessionOf(const Message& message) {
   }
 }
 
-/// The message, naming `session` if its type does so.
-template <typename Message>
-decltype(auto) OfSession(const Message& message, const std::string& session) {
-  if constexpr (HasSession<Message>::value) {
-    Message named = message;
-    named.session = session;
-    return named;
-  } else {
-    return (message);
-  }
-}
-
 }  // namespace voqcal

@@ -25,7 +25,9 @@ void StatusPublisher::Publish(const Module& module,
   message.module = name_.empty() ? module.Name() : name_;
   message.session = session_;
   message.state = state;
+  std::int64_t num_foreign = 0;
   for (const auto& [name, counts] : bus_.channels()) {
+    num_foreign += counts.num_foreign;
     channel_status_t channel{};
     channel.channel = name;
     channel.num_received = counts.num_received;
@@ -41,6 +43,12 @@ void StatusPublisher::Publish(const Module& module,
     counter_t counter{};
     counter.name = name;
     counter.count = count;
+    message.counters.push_back(counter);
+  }
+  if (num_foreign > 0) {
+    counter_t counter{};
+    counter.name = "messages of another session";
+    counter.count = num_foreign;
     message.counters.push_back(counter);
   }
   message.num_counters = static_cast<std::int32_t>(message.counters.size());

@@ -16,8 +16,8 @@ constexpr char kHead[] =
     "# Every key of a rig file, as check_rig --print-defaults prints it. Copy it, give what is\n"
     "# needed (rig, board, camera), and delete what you do not change: the values of all other "
     "keys\n"
-    "# are their defaults. A key that is commented out has none, or a default that is rounded "
-    "here.\n"
+    "# are their defaults. Of a key that is commented out it is an example, or a default that is\n"
+    "# rounded here.\n"
     "# Names end with units; _deg: degrees. Files and folders are relative to the rig file.\n"
     "# Several lidars and cameras: config/rigs/several_sensors.yaml.\n";
 

@@ -104,8 +104,11 @@ def kill_module(session, module):
 def lost_by_recorder(session):
     """What the recording lacks by the sensors' own numbers: lcm-logger loses datagrams on an overloaded machine, and a
     recording without them tells nothing of the modules."""
-    return subprocess.run([BIN / "check_recording", "--quiet", session / "raw.lcm"], check=False, capture_output=True,
-                          text=True).stdout
+    check = subprocess.run([BIN / "check_recording", "--quiet", session / "raw.lcm"], check=False, capture_output=True,
+                           text=True)
+    if check.returncode not in (0, 3):
+        sys.exit(check.stderr)
+    return check.stdout
 
 
 def results_of_recording(rig, session):

@@ -61,8 +61,9 @@ TEST_F(RecordingContentsTest, NothingIsMissingWhereEveryNumberIsThere) {
     if (i % 2 == 0) Write(i * kSecond / 10, "CAMERA_IMAGE", Image(i / 2));
   }
   Write(kSecond, "OTHER", {1, 2, 3});
-  const RecordingContents contents = ContentsOf(log_);
+  const RecordingContents contents = ContentsOf({log_});
   EXPECT_EQ(contents.Missing(), "");
+  EXPECT_EQ(contents.Unknown(), "");
   ASSERT_EQ(contents.channels.size(), 3U);
   EXPECT_EQ(contents.channels.at("LIDAR_POINTS").num_messages, 11);
   EXPECT_NEAR(*contents.channels.at("LIDAR_POINTS").RateHz(), 10.0, 1e-9);
@@ -74,7 +75,7 @@ TEST_F(RecordingContentsTest, NothingIsMissingWhereEveryNumberIsThere) {
 TEST_F(RecordingContentsTest, GapsAreCountedByChannel) {
   for (const int i : {0, 1, 4, 5, 7}) Write(i * kSecond, "LIDAR_POINTS#left", Sweep(i));
   for (const int i : {3, 4, 6}) Write(i * kSecond, "CAMERA_IMAGE", Image(i));
-  EXPECT_EQ(ContentsOf(log_).Missing(),
+  EXPECT_EQ(ContentsOf({log_}).Missing(),
             "CAMERA_IMAGE: 1 of 4 lost, the first 6.0 s after the start; "
             "LIDAR_POINTS#left: 3 of 8 lost, the first 4.0 s after the start");
 }
@@ -82,21 +83,31 @@ TEST_F(RecordingContentsTest, GapsAreCountedByChannel) {
 TEST_F(RecordingContentsTest, ADriverThatStartsAnewOrDoesNotNumberLosesNothing) {
   for (const int i : {7, 8, 0, 1}) Write(kSecond, "LIDAR_POINTS", Sweep(i));
   for (int i = 0; i < 3; ++i) Write(kSecond, "OTHER_POINTS", Sweep(0));
-  EXPECT_EQ(ContentsOf(log_).Missing(), "");
+  EXPECT_EQ(ContentsOf({log_}).Missing(), "");
+  EXPECT_EQ(ContentsOf({log_}).Unknown(), "OTHER_POINTS is not numbered; no images");
+}
+
+TEST_F(RecordingContentsTest, LossesBetweenTheLogsOfOneRecordingAreCounted) {
+  for (const int i : {0, 1}) Write(i * kSecond, "LIDAR_POINTS", Sweep(i));
+  const std::filesystem::path second = folder_.path() / "raw.2.lcm";
+  LogWriter(second).Write({0, 5 * kSecond, "LIDAR_POINTS", Sweep(5)});
+  EXPECT_EQ(ContentsOf({log_, second}).Missing(),
+            "LIDAR_POINTS: 3 of 6 lost, the first 5.0 s after the start");
 }
 
 TEST_F(RecordingContentsTest, WhatIsDamagedIsTold) {
   std::vector<std::uint8_t> broken = Sweep(0);
   broken.resize(broken.size() - 1);
-  Write(0, "LIDAR_POINTS", broken);
-  Write(0, "LIDAR_POINTS", Sweep(1));
-  std::ofstream(log_, std::ios::app | std::ios::binary) << "damage";
-  Write(0, "LIDAR_POINTS", Sweep(2));
-  writer_.Flush();
-  std::filesystem::resize_file(log_, std::filesystem::file_size(log_) - 3);
-  const std::string missing = ContentsOf(log_).Missing();
+  const auto text_of = [](const std::vector<std::uint8_t>& bytes) {
+    const std::vector<std::uint8_t> event = EncodeLogEvent({0, 0, "LIDAR_POINTS", bytes});
+    return std::string(event.begin(), event.end());
+  };
+  const std::string last = text_of(Sweep(2));
+  std::ofstream(log_, std::ios::binary) << text_of(broken) << text_of(Sweep(1)) << "damage" << last
+                                        << last.substr(0, last.size() - 3);
+  const std::string missing = ContentsOf({log_}).Missing();
   EXPECT_THAT(missing, HasSubstr("LIDAR_POINTS: 1 unreadable"));
-  EXPECT_THAT(missing, HasSubstr("1 damaged places"));
+  EXPECT_THAT(missing, HasSubstr("damaged places: 1"));
   EXPECT_THAT(missing, HasSubstr("cut off within a message"));
 }
 

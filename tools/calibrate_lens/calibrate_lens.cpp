@@ -114,9 +114,16 @@ void WriteRig(const Rig& rig, const CameraModel& camera, const std::filesystem::
   const bool is_by_name = !SensorsOfRig(rig.path).cameras.empty();
   const std::string name = is_by_name ? rig.camera_name : "";
   const std::string text = ReadWholeFile(PlaceOfRig(rig.path).file);
-  WriteFileAtomically(written, RigWithCamera(text, camera, name));
-  // Says what lines could not tell: a key written as "camera :", say.
-  LoadRig(written.string() + (is_by_name ? "#" + name : ""), SensorChoice::kCamera);
+  const std::filesystem::path draft = written.string() + ".draft";
+  WriteFileAtomically(draft, RigWithCamera(text, camera, name));
+  try {
+    // Says what lines could not tell: a key written as "camera :", say.
+    LoadRig(draft.string() + (is_by_name ? "#" + name : ""), SensorChoice::kCamera);
+  } catch (const std::exception&) {
+    std::filesystem::remove(draft);
+    throw;
+  }
+  std::filesystem::rename(draft, written);
   std::printf("written\n  %s\n", written.c_str());
 }
 

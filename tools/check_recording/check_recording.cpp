@@ -1,9 +1,9 @@
-// check_recording: what an LCM log holds, channel by channel, and what of the sensors' frames it
-// lacks.
+// check_recording: what LCM logs hold, channel by channel, and what of the sensors' frames they lack.
 
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "check_recording/recording_contents.hpp"
 #include "common/tool_main.hpp"
@@ -13,9 +13,17 @@ namespace voqcal {
 namespace {
 
 struct CheckRecordingArgs {
-  std::filesystem::path log;
+  std::vector<std::filesystem::path> logs;
   bool is_quiet = false;
 };
+
+std::string NamesOf(const std::vector<std::filesystem::path>& logs) {
+  std::string names;
+  for (const std::filesystem::path& log : logs) {
+    names += (names.empty() ? "" : ", ") + log.string();
+  }
+  return names;
+}
 
 void PrintChannels(const RecordingContents& contents) {
   for (const auto& [name, channel] : contents.channels) {
@@ -27,24 +35,36 @@ void PrintChannels(const RecordingContents& contents) {
   }
 }
 
+[[noreturn]] void TellWhatFollows(const RecordingContents& contents) {
+  std::string text =
+      "the recording lacks what the modules may have seen: what is calibrated from it can differ "
+      "from the live result";
+  if (contents.NumLost() > 0) {
+    text +=
+        "; the computer or its disk was too slow for the sensors' rates, or net.core.rmem_max is "
+        "too small (tools/symptoms.md, \"Messages lost\")";
+  }
+  throw DemandNotMet(text);
+}
+
 void CheckRecording(const CheckRecordingArgs& args) {
-  const RecordingContents contents = ContentsOf(args.log);
+  const RecordingContents contents = ContentsOf(args.logs);
   const std::string missing = contents.Missing();
   if (args.is_quiet && missing.empty()) return;
   std::printf("recording  %s: %.1f s, %.1f MB\n",
-              args.log.c_str(),
+              NamesOf(args.logs).c_str(),
               static_cast<double>(contents.end_utime - contents.begin_utime) / 1e6,
               static_cast<double>(contents.num_bytes) / 1e6);
   if (!args.is_quiet) PrintChannels(contents);
-  if (missing.empty()) {
-    std::printf("missing    nothing of the images and sweeps\n");
-    return;
+  const std::string unknown = contents.Unknown();
+  if (!unknown.empty()) {
+    std::printf("unknown    %s: what was lost there does not show\n", unknown.c_str());
   }
-  std::printf("missing    %s\n", missing.c_str());
-  throw DemandNotMet(
-      "the recording lacks what the modules may have seen: what is calibrated from it can differ "
-      "from the live result. Either the computer or its disk is too slow for the sensors' rates, "
-      "or net.core.rmem_max is too small (tools/symptoms.md, \"Messages lost\")");
+  if (!missing.empty()) {
+    std::printf("missing    %s\n", missing.c_str());
+    TellWhatFollows(contents);
+  }
+  if (unknown.empty()) std::printf("missing    nothing of the images and sweeps\n");
 }
 
 }  // namespace
@@ -56,7 +76,10 @@ int main(int argc, char** argv) {
       "it lacks, by their sequence numbers. Exit status 3: it lacks some.",
       "check_recording");
   voqcal::CheckRecordingArgs args;
-  app.add_option("log", args.log, "The recording (LCM log)")->required();
+  app.add_option("logs",
+                 args.logs,
+                 "The recording (LCM log); of a recorder that was started again its logs in order")
+      ->required();
   app.add_flag("--quiet", args.is_quiet, "Only what it lacks; nothing if it is whole");
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::CheckRecording(args); });
 }

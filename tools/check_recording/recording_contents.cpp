@@ -27,15 +27,18 @@ std::int64_t FingerprintOf(const LogEvent& event) {
 void TakeSequence(std::int64_t sequence, std::int64_t utime, ChannelContents* channel) {
   const std::optional<std::int64_t> last = channel->last_sequence;
   channel->last_sequence = sequence;
-  if (!last || sequence <= *last + 1) return;
-  channel->num_lost += sequence - *last - 1;
-  if (!channel->first_loss_utime) channel->first_loss_utime = utime;
+  if (!last) return;
+  channel->is_numbered = channel->is_numbered || sequence != *last;
+  const std::int64_t num_lost = NumLostBetween(*last, sequence);
+  channel->num_lost += num_lost;
+  if (num_lost > 0 && !channel->first_loss_utime) channel->first_loss_utime = utime;
 }
 
 /// Counts an event that is a Message.
 template <typename Message>
-void TakeAs(const LogEvent& event, ChannelContents* channel) {
+void TakeAs(const LogEvent& event, ChannelContents::Kind kind, ChannelContents* channel) {
   if (FingerprintOf(event) != Message::getHash()) return;
+  channel->kind = kind;
   Message message{};
   if (!DecodeMessage(event.bytes.data(), event.bytes.size(), &message).empty()) {
     ++channel->num_unreadable;
@@ -62,8 +65,14 @@ void RecordingContents::Take(const LogEvent& event) {
   ChannelContents& channel = channels[event.channel];
   if (channel.num_messages++ == 0) channel.first_utime = event.utime;
   channel.last_utime = event.utime;
-  TakeAs<image_t>(event, &channel);
-  TakeAs<pointcloud2_t>(event, &channel);
+  TakeAs<image_t>(event, ChannelContents::Kind::kImages, &channel);
+  TakeAs<pointcloud2_t>(event, ChannelContents::Kind::kSweeps, &channel);
+}
+
+std::int64_t RecordingContents::NumLost() const {
+  std::int64_t num_lost = 0;
+  for (const auto& [name, channel] : channels) num_lost += channel.num_lost;
+  return num_lost;
 }
 
 std::string RecordingContents::Missing() const {
@@ -82,7 +91,7 @@ std::string RecordingContents::Missing() const {
       Append(name + ": " + std::to_string(channel.num_unreadable) + " unreadable", &text);
     }
   }
-  if (num_damaged > 0) Append(std::to_string(num_damaged) + " damaged places", &text);
+  if (num_damaged > 0) Append("damaged places: " + std::to_string(num_damaged), &text);
   if (num_cut_bytes > 0) {
     Append("cut off within a message, whose " + std::to_string(num_cut_bytes) + " bytes are lost",
            &text);
@@ -90,16 +99,33 @@ std::string RecordingContents::Missing() const {
   return text;
 }
 
-RecordingContents ContentsOf(const std::filesystem::path& log) {
-  LogReader reader(log);
-  RecordingContents contents;
-  contents.num_bytes = reader.num_bytes();
-  try {
-    while (const std::optional<LogEvent> event = reader.Next()) contents.Take(*event);
-  } catch (const TruncatedLogError& error) {
-    contents.num_cut_bytes = reader.num_bytes() - error.offset();
+std::string RecordingContents::Unknown() const {
+  std::string text;
+  bool has_images = false;
+  bool has_sweeps = false;
+  for (const auto& [name, channel] : channels) {
+    has_images = has_images || channel.kind == ChannelContents::Kind::kImages;
+    has_sweeps = has_sweeps || channel.kind == ChannelContents::Kind::kSweeps;
+    const bool is_of_sensor = channel.kind != ChannelContents::Kind::kOther;
+    if (is_of_sensor && !channel.is_numbered) Append(name + " is not numbered", &text);
   }
-  contents.num_damaged = reader.num_damaged();
+  if (!has_images) Append("no images", &text);
+  if (!has_sweeps) Append("no sweeps", &text);
+  return text;
+}
+
+RecordingContents ContentsOf(const std::vector<std::filesystem::path>& logs) {
+  RecordingContents contents;
+  for (const std::filesystem::path& log : logs) {
+    LogReader reader(log);
+    contents.num_bytes += reader.num_bytes();
+    try {
+      while (const std::optional<LogEvent> event = reader.Next()) contents.Take(*event);
+    } catch (const TruncatedLogError& error) {
+      contents.num_cut_bytes += reader.num_bytes() - error.offset();
+    }
+    contents.num_damaged += reader.num_damaged();
+  }
   return contents;
 }
 

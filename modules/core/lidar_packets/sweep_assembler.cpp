@@ -21,7 +21,7 @@ PointCloud TimedSweep::Cloud(bool has_ring) const {
   for (const PacketReturn& measured : returns) {
     cloud.points.push_back(measured.point);
     cloud.points.back().return_number = static_cast<std::uint8_t>(measured.number);
-    cloud.has_return_number = cloud.has_return_number || measured.of_how_many > 1;
+    cloud.has_return_number |= measured.number > 1 || measured.of_how_many > 1;
   }
   return cloud;
 }

@@ -1,5 +1,6 @@
 #include "messaging/session_name.hpp"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 
 #include "messaging/bus.hpp"
 #include "messaging/encode.hpp"
+#include "support/temporary_folder.hpp"
 #include "voqcal/module_status_t.hpp"
 #include "voqcal/samples_t.hpp"
 
@@ -19,6 +21,17 @@ using ::testing::ElementsAre;
 TEST(SessionName, IsOfHostAndFolder) {
   EXPECT_THAT(SessionName("/a/b/../c"), ::testing::EndsWith(":/a/c"));
   EXPECT_EQ(SessionName("").back(), ':');
+}
+
+TEST(SessionName, IsTheSameBeforeTheFolderIsThereAndHoweverItIsWritten) {
+  const test::TemporaryFolder folder;
+  const auto here = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const std::string before = SessionName("new/");
+  std::filesystem::create_directory("new");
+  EXPECT_EQ(SessionName("new"), before);
+  EXPECT_EQ(SessionName(folder.path() / "new"), before);
+  std::filesystem::current_path(here);
 }
 
 TEST(MayBeOf, TakesItsOwnAndItsPairs) {
@@ -58,6 +71,7 @@ TEST(BusOfASession, TakesNoStateOfAnother) {
   PublishFrom("robot:/s", samples_t{}, &bus);
   EXPECT_THAT(taken, ElementsAre("desk:/s", "robot:/s"));
   EXPECT_EQ(bus.channels().at("samples_t").num_received, 2);
+  EXPECT_EQ(bus.channels().at("samples_t").num_foreign, 1);
 }
 
 TEST(BusOfASession, NamesItInWhatItPublishes) {

@@ -72,7 +72,7 @@ std::filesystem::path ImportBag(const Rig& rig,
 
 std::filesystem::path ImportBagOfRig(const std::vector<Rig>& pairs,
                                      const std::vector<std::string>& paths,
-                                     const std::map<std::string, std::string>& topics,
+                                     const std::multimap<std::string, std::string>& topics,
                                      RecordingTimes times,
                                      const std::filesystem::path& folder) {
   Import import(pairs.front(), times, folder);

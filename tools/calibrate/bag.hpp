@@ -29,7 +29,7 @@ std::filesystem::path ImportBag(const Rig& rig,
 /// @param topics  by sensor; those left out are matched as import_ros does it.
 std::filesystem::path ImportBagOfRig(const std::vector<Rig>& pairs,
                                      const std::vector<std::string>& paths,
-                                     const std::map<std::string, std::string>& topics,
+                                     const std::multimap<std::string, std::string>& topics,
                                      RecordingTimes times,
                                      const std::filesystem::path& folder);
 

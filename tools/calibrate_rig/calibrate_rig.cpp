@@ -32,7 +32,7 @@ struct CalibrateRigArgs {
   std::filesystem::path rig;
   std::filesystem::path log;
   std::vector<std::string> bag;               ///< Instead of log: a recording of ROS, its paths.
-  std::map<std::string, std::string> topics;  ///< Of bag, by sensor.
+  std::multimap<std::string, std::string> topics;  ///< Of bag, by sensor.
   std::filesystem::path out;
   std::string reference;  ///< Empty: the first lidar.
   RecordingTimes times = RecordingTimes::kAuto;
@@ -199,7 +199,7 @@ void TakeTopic(const std::string& text, CalibrateRigArgs* args) {
   if (equals == std::string::npos) {
     throw CLI::ValidationError("--topic", "must be SENSOR=NAME, is " + text);
   }
-  args->topics[text.substr(0, equals)] = text.substr(equals + 1);
+  args->topics.emplace(text.substr(0, equals), text.substr(equals + 1));
 }
 
 void CalibrateRig(const CalibrateRigArgs& args) {

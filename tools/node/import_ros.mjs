@@ -6,12 +6,14 @@ import { dirname, join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { judgeClocks } from "./lib/clocks.mjs";
 import { UserError, runCommand } from "./lib/command.mjs";
+import { firstMessages } from "./lib/first_messages.mjs";
 import { chooseTopic, sensorsOf } from "./lib/import_sensors.mjs";
 import { cameraTarget, cloudTarget, imageTarget, packetTarget } from "./lib/import_targets.mjs";
 import { LogWriter } from "./lib/lcm_log.mjs";
 import { LcmTypes } from "./lib/lcm_types.mjs";
 import { prepareOutput } from "./lib/output_file.mjs";
 import { DecoderFailed } from "./lib/packet_decoder.mjs";
+import { siblingsOf } from "./lib/packet_siblings.mjs";
 import { Progress } from "./lib/progress.mjs";
 import { DamagedIndex } from "./lib/recordings/merged.mjs";
 import { openRecording } from "./lib/recordings/open.mjs";
@@ -19,7 +21,6 @@ import { cameraSection, cameraToLcm, isRectifiedTopic } from "./lib/sensor_msgs/
 import { positionDoubt, timeKind } from "./lib/sensor_msgs/clouds.mjs";
 import { bitsUsed } from "./lib/sensor_msgs/images.mjs";
 import { CAMERA_INFOS, IMAGES } from "./lib/sensor_msgs/messages.mjs";
-import { PACKETS } from "./lib/sensor_msgs/packets.mjs";
 
 const command = {
   name: "import_ros",
@@ -67,13 +68,11 @@ const command = {
 or     import_ros RECORDING... --out LOG --lidar SENSOR=CHANNEL... --camera SENSOR=CHANNEL... [--topic SENSOR=NAME]...
   a rig of several sensors, each onto a channel of its own (calibrate_rig --bag does it by the rig file); --rig as above.
   --topic SENSOR=NAME          the sensor's topic. May be left out where a topic is called as the sensor's channel, or
-                               there are as many topics as sensors of its kind, with the sensors' names in theirs
+                               there are as many topics as sensors of its kind, with the sensors' names in theirs. Once more for a
+                               topic beside the lidar's packets (DIFOP, metadata), where names do not tell whose it is
 or     import_ros RECORDING... --print-camera [--camera-info-topic NAME] [--image-topic NAME]
   prints CameraInfo as the camera section of a rig file; for a topic of rectified images (image_rect...), of those`,
 };
-
-const NUM_SAMPLED = 20; // messages of each topic that clocks, times and bits are told by
-const MAX_SAMPLED_BYTES = 1 << 28;
 
 /** The image's topic, if it was named or there is only one: it says whose CameraInfo, and if it is rectified. */
 function imageTopicIfClear(recording, flags) {
@@ -118,10 +117,10 @@ async function* inFixedOrder(messages, names) {
 async function targetsOf(recording, sensors, flags) {
   const plan = new Map();
   const typeOf = (topic) => recording.topics.get(topic).type;
-  const senders = sensors.filter(({ kind, topic }) => kind === "lidar" && PACKETS.includes(typeOf(topic)));
+  const siblings = siblingsOf(recording, sensors);
   for (const sensor of sensors) {
     const { kind, topic, channel } = sensor;
-    if (senders.includes(sensor)) await addPackets(plan, recording, sensor, isTopicBeside(topic, senders), flags);
+    if (siblings.has(sensor)) await addPackets(plan, recording, sensor, siblings.get(sensor), flags);
     else plan.set(topic, (kind === "lidar" ? cloudTarget : imageTarget)(topic, typeOf(topic), channel));
   }
   if (flags["camera-info-topic"] !== undefined) addCameraInfo(plan, recording, sensors, flags);
@@ -136,16 +135,9 @@ function addCameraInfo(plan, recording, sensors, flags) {
   plan.set(topic, cameraTarget(topic, recording.topics.get(topic).type, channel, imageTopic));
 }
 
-/** Whether a topic without points belongs to the lidar of `topic`: the only one, or that of its name or folder. */
-function isTopicBeside(topic, senders) {
-  const folder = dirname(topic);
-  const isWithin = (name) => name.startsWith(topic) || (folder !== "/" && dirname(name) === folder);
-  return senders.length === 1 ? () => true : isWithin;
-}
-
 /** The packets' topic, and those of the sensor's state, which RoboSense's decoders learn from. */
-async function addPackets(plan, recording, { name, topic, channel }, isBeside, flags) {
-  const metadata = await metadataFile(recording, isBeside);
+async function addPackets(plan, recording, { name, topic, channel }, siblings, flags) {
+  const metadata = await metadataFile(recording, siblings.metadata);
   const rig = flags.rig && flags.lidar ? `${flags.rig}#${name}` : flags.rig;
   const args = { rig, model: flags["lidar-model"], calibration: flags["lidar-calibration"], metadata };
   const given = Object.entries(args).filter(([, value]) => value !== undefined);
@@ -155,15 +147,12 @@ async function addPackets(plan, recording, { name, topic, channel }, isBeside, f
     channel,
     given.flatMap(([flag, value]) => [`--${flag}`, value]),
   );
-  const isState = ([each, { type }]) => PACKETS.includes(type) && /difop/i.test(each) && isBeside(each);
-  for (const [each] of [...recording.topics].filter(isState)) plan.set(each, target);
+  for (const each of siblings.state) plan.set(each, target);
   plan.set(topic, target);
 }
 
 /** Ouster's driver records its sensor's metadata beside the packets, as text. */
-async function metadataFile(recording, isBeside) {
-  const isMetadata = ([name, { type }]) => type === "std_msgs/String" && /metadata$/.test(name) && isBeside(name);
-  const topics = [...recording.topics].filter(isMetadata).map(([name]) => name);
+async function metadataFile(recording, topics) {
   if (topics.length === 0) return undefined;
   for await (const message of recording.messages(topics)) {
     const folder = mkdtempSync(join(tmpdir(), "voqcal-metadata-"));
@@ -173,26 +162,6 @@ async function metadataFile(recording, isBeside) {
     return path;
   }
   return undefined;
-}
-
-/** The first messages of each sensor: {message, stampNs, logTimeNs} by topic. Broken ones are passed over. */
-async function firstMessages(recording, plan, sensors) {
-  const first = new Map(sensors.map(({ topic }) => [topic, []]));
-  let numBytes = 0;
-  for await (const { topic, logTimeNs, data, decode } of recording.messages([...first.keys()])) {
-    const { prepare, stampNs } = plan.get(topic);
-    numBytes += data.length;
-    const isEnough = [...first.values()].every(({ length }) => length >= NUM_SAMPLED);
-    if (isEnough || numBytes > MAX_SAMPLED_BYTES) break;
-    if (first.get(topic).length >= NUM_SAMPLED) continue;
-    try {
-      const message = prepare(decode());
-      first.get(topic).push({ message, logTimeNs, stampNs: stampNs(message, logTimeNs) });
-    } catch {
-      // Counted when it is imported.
-    }
-  }
-  return first;
 }
 
 /**
@@ -206,7 +175,7 @@ async function settle(recording, plan, sensors, flags, words) {
   const useLogTimes = flags.times === "log" || (flags.times === "auto" && clocks.useLogTimes);
   const told = new Map();
   for (const sensor of sensors) {
-    const messages = first.get(sensor.topic).map(({ message }) => message);
+    const messages = first.get(sensor.topic).map(({ message }) => message).filter(Boolean);
     const say = (line) => words.push(flags.lidar ? `${sensor.name}: ${line}` : line);
     const isOfPackets = plan.get(sensor.topic).hasPackets;
     if (!isOfPackets) told.set(sensor.topic, (sensor.kind === "lidar" ? toldOfClouds : toldOfImages)(messages, say));
@@ -228,7 +197,8 @@ function clocksOf(sensors, first) {
     }
   }
   const isPair = sensors.length <= 2;
-  return { useLogTimes, words: [...pairs].map(([words, names]) => (isPair ? words : `${names.join(", ")}: ${words}`)) };
+  const end = useLogTimes ? "" : ": stamps are used";
+  return { useLogTimes, words: [...pairs].map(([words, names]) => (isPair ? "" : `${names.join(", ")}: `) + words + end) };
 }
 
 function toldOfClouds(clouds, say) {

@@ -10,7 +10,8 @@ const MAX_DELAYS_APART_S = 0.25;
 
 /**
  * @param lidar, camera  {logTimeNs, stampNs} of their first messages, BigInt, by log time.
- * @returns {useLogTimes, words}: words is undefined where there is nothing to say.
+ * @returns {useLogTimes, words}: words is undefined where there is nothing to say. Where log times do not help, whether stamps
+ *     are used is for all sensors to tell.
  */
 export function judgeClocks(lidar, camera) {
   const problem = stampProblem("clouds", lidar) ?? stampProblem("images", camera) ?? difference(lidar, camera);
@@ -18,7 +19,7 @@ export function judgeClocks(lidar, camera) {
   const apartS = logTimesApartS(lidar, camera);
   if (!(apartS < 0.1)) {
     const apart = `nor do the times at which they were recorded agree (${inWords(apartS)} apart)`;
-    return { useLogTimes: false, words: `${problem}; ${apart}: stamps are used` };
+    return { useLogTimes: false, words: `${problem}; ${apart}` };
   }
   return {
     useLogTimes: true,

@@ -1,6 +1,8 @@
-// Which topic of a recording is which sensor's: {name, kind, channel, topic} each, of a pair or of a rig's several.
+// Which topic of a recording is which sensor's: {name, kind, channel, topic} each, of a pair or of a rig's several; with
+// `beside`, the topics without points that were given to it by name.
 
 import { UserError } from "./command.mjs";
+import { topicsBeside } from "./packet_siblings.mjs";
 import { CLOUDS, IMAGES } from "./sensor_msgs/messages.mjs";
 import { PACKETS, isBesidePackets } from "./sensor_msgs/packets.mjs";
 
@@ -54,6 +56,9 @@ function sensorsByName(recording, flags) {
   for (const flag of ["lidar-topic", "image-topic", "images-only"]) {
     if (flags[flag]) throw new UserError(`--${flag} is of a pair: beside --lidar and --camera, --topic SENSOR=NAME says it`);
   }
+  if (flags["camera-info-topic"]) {
+    throw new UserError("--camera-info-topic is of a pair: beside --lidar and --camera no CameraInfo goes into the log (--print-camera prints it)");
+  }
   const sensors = [
     ...namedBy("lidar", flags.lidar).map(([name, channel]) => ({ kind: "lidar", name, channel })),
     ...namedBy("camera", flags.camera).map(([name, channel]) => ({ kind: "image", name, channel })),
@@ -78,11 +83,22 @@ function giveTopics(recording, sensors, given) {
     if (!sensor) {
       throw new UserError(`--topic ${name}=${topic}: no sensor ${name}; there are ${sensors.map((each) => each.name).join(", ")}`);
     }
-    const types = sensor.kind === "lidar" ? [...CLOUDS, ...PACKETS] : IMAGES;
-    sensor.topic = chooseTopic(recording, `topic ${name}=NAME`, topic, types);
-    const other = sensors.find((each) => each !== sensor && each.topic === sensor.topic);
-    if (other) throw new UserError(`--topic ${name}=${topic}: ${sensor.topic} is given to ${other.name} too`);
+    const taken = giveTopic(recording, sensor, topic);
+    const other = sensors.find((each) => each !== sensor && [each.topic, ...(each.beside ?? [])].includes(taken));
+    if (other) throw new UserError(`--topic ${name}=${topic}: ${taken} is given to ${other.name} too`);
   }
+}
+
+/** @returns the topic's full name. */
+function giveTopic(recording, sensor, topic) {
+  const beside = topicsBeside(recording).find((each) => each === topic || each === `/${topic}`);
+  if (sensor.kind === "lidar" && beside !== undefined) {
+    (sensor.beside ??= []).push(beside);
+    return beside;
+  }
+  const types = sensor.kind === "lidar" ? [...CLOUDS, ...PACKETS] : IMAGES;
+  sensor.topic = chooseTopic(recording, `topic ${sensor.name}=NAME`, topic, types);
+  return sensor.topic;
 }
 
 /** The sensors of this kind that have no topic yet get the one of their channel's or their own name. */
@@ -91,7 +107,8 @@ function matchTopics(recording, all, kind) {
   const types = kind === "lidar" ? lidarTypes(recording) : IMAGES;
   const isFree = (topic) => all.every((sensor) => sensor.topic !== topic);
   for (const sensor of sensors) {
-    if (topicsOfTypes(recording, types).includes(sensor.channel)) sensor.topic = sensor.channel;
+    const isThere = topicsOfTypes(recording, types).includes(sensor.channel);
+    if (isThere && isFree(sensor.channel)) sensor.topic = sensor.channel;
   }
   const without = sensors.filter(({ topic }) => topic === undefined);
   if (without.length === 0) return;

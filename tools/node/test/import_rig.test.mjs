@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { firstMessages } from "../lib/first_messages.mjs";
 import { readLog } from "../lib/lcm_log.mjs";
 import { voqcalTypes } from "../lib/lcm_types.mjs";
 import { writeMcap } from "./recording_writers.mjs";
@@ -36,13 +37,17 @@ const image = (ns, brightness) => ({
 const LIDARS = { "/front/points": 1, "/rear/points": 1e6 }; // seconds, microseconds
 const CAMERAS = { "/cam_left/image": 10, "/cam_LEFT_FRONT/image": 20 }; // their brightness
 
-/** Five frames of every sensor. @param lateNs  by topic, how much later its stamps are than when it was recorded. */
-async function record(name, { lidars = LIDARS, cameras = CAMERAS, lateNs = {} } = {}) {
+/**
+ * Five frames of every sensor.
+ * @param lateNs, recordedLateNs  by topic, how much later its stamps are than they should be, and than others it is recorded.
+ */
+async function record(name, { lidars = LIDARS, cameras = CAMERAS, lateNs = {}, recordedLateNs = {} } = {}) {
   const messages = [];
   for (let i = 0n; i < 5n; ++i) {
-    const logTimeNs = START + i * (SECOND / 10n);
+    const timeNs = START + i * (SECOND / 10n);
     const add = (topic, type, make, what) => {
-      messages.push({ topic, type, logTimeNs, message: make(logTimeNs + (lateNs[topic] ?? 0n), what) });
+      const logTimeNs = timeNs + (recordedLateNs[topic] ?? 0n);
+      messages.push({ topic, type, logTimeNs, message: make(timeNs + (lateNs[topic] ?? 0n), what) });
     };
     for (const [topic, ticks] of Object.entries(lidars)) add(topic, "sensor_msgs/PointCloud2", cloud, ticks);
     for (const [topic, brightness] of Object.entries(cameras)) add(topic, "sensor_msgs/Image", image, brightness);
@@ -98,6 +103,15 @@ test("topics of other names: one line says which there are and which flags map t
   assert.match(imported("one_left.mcap", [...SENSORS, "--topic", "front=/lidar1"]).said, /L_rear: 5 messages of \/lidar0/);
 });
 
+test("a topic that is given to another sensor is not taken a second time for its channel's name", async () => {
+  await record("given.mcap", { cameras: { IMAGE_right: 10, IMAGE_other: 20 } });
+  const sensors = [...SENSORS.slice(0, 4), "--camera", "left=C_left", "--camera", "right=IMAGE_right", "--topic", "left=IMAGE_right"];
+  const { C_left, IMAGE_right } = imported("given.mcap", sensors);
+  assert.deepEqual([C_left[0].data[0], IMAGE_right[0].data[0]], [10, 20]);
+  await record("given.mcap", { cameras: { IMAGE_right: 10 } });
+  assert.match(run("given.mcap", sensors).stderr, /^import_ros: [^\n]*topics are those of the cameras right is not clear[^\n]*\n$/);
+});
+
 test("names that fit two topics, or none, are not guessed", async () => {
   for (const lidars of [{ "/front/a": 1, "/front/b": 1 }, { "/front_rear/a": 1, "/x": 1 }, { "/front_and_rear/a": 1, "/rear": 1 }]) {
     await record("unclear.mcap", { lidars });
@@ -119,6 +133,7 @@ test("flags that cannot be meant: one line", async () => {
   const twice = ["--topic", "front=/rear/points", "--topic", "rear=/rear/points"];
   refuses("/rear/points is given to front too", ...SENSORS, ...twice);
   refuses("--lidar-topic is of a pair", ...SENSORS, "--lidar-topic", "/front/points");
+  refuses("--camera-info-topic is of a pair", ...SENSORS, "--camera-info-topic", "/info");
   refuses("--topic is of a sensor that --lidar or --camera names", "--topic", "front=/front/points");
 });
 
@@ -127,4 +142,37 @@ test("a sensor on another clock: log times for all, and which pairs tell of it",
   const { L_front, C_2, said } = imported("clocks.mcap");
   assert.equal(C_2[0].utime, L_front[0].utime);
   assert.match(said, /^front with left, rear with left: the clocks of lidar and camera differ by 16.7 min; log times/m);
+});
+
+test("log times for all: of no pair is it said that stamps are used", async () => {
+  const lateNs = { "/cam_left/image": 1000n * SECOND, "/cam_LEFT_FRONT/image": 40n * SECOND };
+  const recordedLateNs = { "/cam_LEFT_FRONT/image": 20n * SECOND };
+  await record("both.mcap", { lateNs, recordedLateNs });
+  const { L_front, C_1, C_2, said } = imported("both.mcap");
+  assert.deepEqual([C_1, C_2].map(([{ utime }]) => utime - L_front[0].utime), [20_000_000n, 0n]);
+  assert.match(said, /^front with left, rear with left: [^\n]*log times agree within 0 ms: using them/m);
+  assert.match(said, /^front with left_front, rear with left_front: [^\n]*nor do the times [^\n]*agree \(19.8 s apart\)$/m);
+  await record("stamps.mcap", { lateNs: { "/cam_LEFT_FRONT/image": 40n * SECOND }, recordedLateNs });
+  assert.match(imported("stamps.mcap").said, /agree \(19.8 s apart\): stamps are used$/m);
+});
+
+/** A recording whose messages are all as large; how many were read is counted. */
+function endless(topics, numBytes) {
+  const recording = { numRead: 0 };
+  const message = { data: { length: numBytes }, logTimeNs: START, decode: () => ({}) };
+  recording.messages = async function* () {
+    for (;;) for (const topic of topics) yield { topic, ...message, num: ++recording.numRead };
+  };
+  return recording;
+}
+const planOf = (topics) => new Map(topics.map((topic) => [topic, { prepare: (message) => message, stampNs: () => START, isTelling: () => false }]));
+
+test("how much is looked at grows with the sensors; one that is silent does not have all read", async () => {
+  const topics = ["a", "b", "c", "d", "e", "f", "g", "h"];
+  const sensors = topics.map((topic) => ({ topic }));
+  const first = await firstMessages(endless(topics, 12 << 20), planOf(topics), sensors);
+  assert.deepEqual([...first.values()].map(({ length }) => length), topics.map(() => 20));
+  const withoutA = endless(topics.slice(1), 16 << 20);
+  assert.equal((await firstMessages(withoutA, planOf(topics), sensors)).get("a").length, 0);
+  assert.equal(withoutA.numRead, 8 * 16 + 1);
 });

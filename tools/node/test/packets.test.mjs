@@ -68,13 +68,13 @@ function robosensePackets() {
   });
 }
 
-/** What the sensor says of itself (DIFOP): the strongest return; 32 lasers from 10 degrees down on, each 0.5 higher. */
-function robosenseState() {
+/** What the sensor says of itself (DIFOP): the strongest return; 32 lasers from `lowest` (1/100 degree) on, each 0.5 higher. */
+function robosenseState(lowest = -1000) {
   const bytes = Buffer.alloc(1248);
   bytes.write("a5ff005a11115555", "hex");
   bytes[300] = 1;
   for (let laser = 0; laser < 32; ++laser) {
-    const elevation = -1000 + 50 * laser;
+    const elevation = lowest + 50 * laser;
     bytes[468 + 3 * laser] = Number(elevation < 0);
     bytes.writeUInt16BE(Math.abs(elevation), 469 + 3 * laser);
   }
@@ -303,6 +303,42 @@ test("RoboSense's angles come from the topic of the sensor's state", options, as
   const state = rsSingles([robosenseState()], "rslidar_msgs/rslidarPacket", "/rslidar_packets_difop");
   await writeMcap(path("rs32.mcap"), [...state, ...scans]);
   assert.deepEqual(pointsOf(imported(path("rs32.mcap"), ...model).sweeps), expected);
+});
+
+test("of several RoboSense each has the angles of its own state's topic; where names do not tell, --topic does", options, async () => {
+  const packets = robosensePackets();
+  const states = { front: robosenseState(-1000), rear: robosenseState(-500) };
+  const expected = {};
+  for (const [name, state] of Object.entries(states)) {
+    writePcap(path(`${name}.pcap`), [state, ...packets]);
+    expected[name] = pointsOf(decoded(path(`${name}.pcap`), "robosense_32"));
+  }
+  assert.notDeepEqual(expected.front, expected.rear);
+  const scans = scansOf(packets, "rslidar_msgs/rslidarScan");
+  const write = async (file, topics, difops) => {
+    const all = Object.keys(states).map((name, i) => rsSingles([states[name]], "rslidar_msgs/rslidarPacket", difops[i]));
+    const sent = topics.flatMap((topic) => scans.map((scan) => ({ ...scan, topic })));
+    await writeMcap(path(file), [...all.flat(), ...withImages(sent)]);
+  };
+  const sensors = ["--lidar", "front=FRONT", "--lidar", "rear=REAR", "--camera", "left=LEFT", "--lidar-model", "robosense_32"];
+  const bothRight = (file, ...flags) => {
+    imported(path(file), ...sensors, ...flags);
+    assert.deepEqual(pointsOf(sweepsOf(path("out.lcm"), "FRONT")), expected.front);
+    assert.deepEqual(pointsOf(sweepsOf(path("out.lcm"), "REAR")), expected.rear);
+  };
+  const inOneFolder = ["/rslidar/front_packets", "/rslidar/rear_packets"];
+  await write("two.mcap", inOneFolder, ["/rslidar/front_difop", "/rslidar/rear_difop"]);
+  bothRight("two.mcap");
+  // Of one that is taken, not the other's.
+  imported(path("two.mcap"), "--lidar-topic", "/rslidar/front_packets", "--lidar-model", "robosense_32");
+  assert.deepEqual(pointsOf(sweepsOf(path("out.lcm"))), expected.front);
+  await write("two.mcap", ["/lidar1", "/lidar10"], ["/lidar1_difop", "/lidar10_difop"]);
+  bothRight("two.mcap", "--topic", "front=/lidar1", "--topic", "rear=/lidar10");
+  await write("two.mcap", inOneFolder, ["/rslidar/difop_0", "/rslidar/difop_1"]);
+  const unclear = spawnSync(importRos, [path("two.mcap"), "--force", "--out", path("out.lcm"), ...sensors], { encoding: "utf8" });
+  assert.equal(unclear.status, 1);
+  assert.match(unclear.stderr, /^import_ros: [^\n]*: which lidar's \/rslidar\/difop_0 is, that of [^\n]*: --topic SENSOR=\/rslidar\/difop_0 says it[^\n]*\n$/);
+  bothRight("two.mcap", "--topic", "front=/rslidar/difop_0", "--topic", "rear=/rslidar/difop_1");
 });
 
 test("RoboSense's packets one by one, the sensor's state among them: as decode_lidar", options, async () => {

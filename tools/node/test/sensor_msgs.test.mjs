@@ -169,14 +169,19 @@ test("points in millimetres, in a map's frame, or none: said", () => {
   assert.match(positionDoubt([moved([0, 0, 0], NaN)]), /no point of the first 1 clouds has a position/);
 });
 
-test("Livox' own messages", () => {
+test("Livox' own messages; those of the first driver tell which echo a point is", () => {
   const points = [{ offset_time: 5_000_000, x: 1, y: 2, z: 3, reflectivity: 9, tag: 0x10, line: 4 }];
-  const { fields, data, width } = cloudToLcm(asCloud({ header, points }, "livox_ros_driver2/CustomMsg"), 0n, 0, undefined);
-  assert.deepEqual(fields.map(({ name }) => name), ["x", "y", "z", "intensity", "ring", "time", "return_number"]);
-  assert.equal(width, 1);
-  assert.deepEqual([data.readFloatLE(8), data.readFloatLE(12), data.readUInt16LE(16)], [3, 9, 4]);
-  assert.ok(Math.abs(data.readFloatLE(18) - 0.005) < 1e-9);
-  assert.equal(data.readUInt8(22), 2);
+  const names = ["x", "y", "z", "intensity", "ring", "time"];
+  const cases = { "livox_ros_driver/CustomMsg": ["return_number"], "livox_ros_driver2/CustomMsg": [] };
+  for (const [type, more] of Object.entries(cases)) {
+    const cloud = asCloud({ header, points: [...points, ...points] }, type);
+    const { fields, data, width, point_step: step } = cloudToLcm(cloud, 0n, 0, undefined);
+    assert.deepEqual(fields.map(({ name }) => name), [...names, ...more]);
+    assert.deepEqual([width, data.length], [2, 2 * step]);
+    assert.deepEqual([data.readFloatLE(step + 8), data.readFloatLE(step + 12), data.readUInt16LE(step + 16)], [3, 9, 4]);
+    assert.ok(Math.abs(data.readFloatLE(step + 18) - 0.005) < 1e-9);
+    if (more.length > 0) assert.equal(data.readUInt8(step + 22), 2);
+  }
 });
 
 // ---- Cameras ---------------------------------------------------------------------------------------

@@ -31,7 +31,7 @@ const SWEEP_S = [0.004, 2.5]; // how long sweeps and Livox' frames take: distinc
 
 /** A message of a cloud topic as a PointCloud2 whose sizes are mended where that is safe. */
 export function asCloud(message, type) {
-  if (LIVOX_CLOUDS.includes(type)) return livoxToCloud(message);
+  if (LIVOX_CLOUDS.includes(type)) return livoxToCloud(message, type);
   const { width, point_step, data } = message;
   const height = message.height || 1; // some drivers leave it 0
   const rowBytes = width * point_step;

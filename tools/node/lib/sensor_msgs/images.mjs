@@ -36,12 +36,16 @@ for (const pattern of ["rggb", "bggr", "gbrg", "grbg"]) {
   ENCODINGS[`bayer_${pattern}16`] = { ...GRAY, isMosaic: true, bytes: 2 };
 }
 
+const kindOf = ({ encoding }) => ENCODINGS[encoding?.toLowerCase()];
+
+/** Of 16 bits. */
+export const hasWideNumbers = (image) => kindOf(image)?.bytes === 2;
+
 /** How many bits of 16 a recording's images use: the first `images` tell. Sensors have 10, 12, 14 or 16. */
 export function bitsUsed(images) {
   let greatest = 0;
   for (const image of images) {
-    const kind = ENCODINGS[image.encoding?.toLowerCase()];
-    if (kind?.bytes === 2) greatest = Math.max(greatest, greatestOf(image, kind));
+    if (hasWideNumbers(image)) greatest = Math.max(greatest, greatestOf(image, kindOf(image)));
   }
   if (greatest === 0) return undefined;
   return [8, 10, 12, 14, 16].find((bits) => greatest < 2 ** bits);

@@ -31,22 +31,24 @@ export const LIVOX_DEFINITIONS = Object.fromEntries(
   LIVOX_CLOUDS.map((type) => [type, CUSTOM(type.split("/")[0])]),
 );
 
-const POINT_BYTES = 23;
-/** In a point's tag, from 0 on. */
+/** Whose tags have the echo's number, from 0 on, in bits 4 and 5 (Avia, Horizon, Mid-70); HAP's and Mid-360's, a confidence. */
+const TYPE_WITH_ECHOES = "livox_ros_driver/CustomMsg";
 const echoOf = (tag) => (tag >> 4) & 3;
 
 /** CustomMsg as the PointCloud2 that the driver would have sent: metres, seconds after the stamp. */
-export function livoxToCloud({ header, points }) {
-  const data = Buffer.alloc(points.length * POINT_BYTES);
+export function livoxToCloud({ header, points }, type) {
+  const hasEchoes = type === TYPE_WITH_ECHOES;
+  const pointBytes = hasEchoes ? 23 : 22;
+  const data = Buffer.alloc(points.length * pointBytes);
   points.forEach((point, i) => {
-    const at = i * POINT_BYTES;
+    const at = i * pointBytes;
     data.writeFloatLE(point.x, at);
     data.writeFloatLE(point.y, at + 4);
     data.writeFloatLE(point.z, at + 8);
     data.writeFloatLE(point.reflectivity, at + 12);
     data.writeUInt16LE(point.line, at + 16);
     data.writeFloatLE(1e-9 * point.offset_time, at + 18);
-    data.writeUInt8(echoOf(point.tag) + 1, at + 22);
+    if (hasEchoes) data.writeUInt8(echoOf(point.tag) + 1, at + 22);
   });
   const field = (name, offset, datatype) => ({ name, offset, datatype, count: 1 });
   return {
@@ -57,10 +59,10 @@ export function livoxToCloud({ header, points }) {
       ...["x", "y", "z", "intensity"].map((name, i) => field(name, 4 * i, 7)),
       field("ring", 16, 4),
       field("time", 18, 7),
-      field("return_number", 22, 2),
+      ...(hasEchoes ? [field("return_number", 22, 2)] : []),
     ],
     is_bigendian: false,
-    point_step: POINT_BYTES,
+    point_step: pointBytes,
     row_step: data.length,
     data,
     is_dense: true,

@@ -28,7 +28,7 @@ struct ChannelCounts {
   /// repeats everything.
   std::int64_t num_lost = 0;
   std::int64_t num_malformed =
-      0;  ///< Could not be decoded; reported once a channel, counted always.
+      0;                         ///< Could not be decoded; reported once a channel, counted always.
   std::int64_t num_foreign = 0;  ///< Of another session, and not taken.
 };
 

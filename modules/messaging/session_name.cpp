@@ -20,7 +20,8 @@ std::string SessionName(const std::filesystem::path& session_dir) {
   char host[HOST_NAME_MAX + 1] = {};
   if (gethostname(host, HOST_NAME_MAX) != 0) std::strcpy(host, "unknown");
   if (session_dir.empty()) return std::string(host) + ":";
-  const std::filesystem::path folder = weakly_canonical(absolute(session_dir));  // it may be to come
+  const std::filesystem::path folder =
+      weakly_canonical(absolute(session_dir));  // it may be to come
   return std::string(host) + ":" + (folder.has_filename() ? folder : folder.parent_path()).string();
 }
 

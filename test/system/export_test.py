@@ -238,55 +238,58 @@ class ExportExtrinsic(unittest.TestCase):
         )
         return path
 
+    def for_each_export(self, check, *args):
+        """check(T_camera_lidar, format, text) of each extrinsic in each format."""
+        for name, (q, t) in EXTRINSICS.items():
+            for form in FORMATS:
+                with self.subTest(extrinsic=name, format=form):
+                    text = self.export(self.result(q, t), "--format", form, *args)
+                    check(transform(rotation_of_quaternion(*q), t), form, text)
+
     def run_export(self, *args):
         return subprocess.run(
             [f"{BIN}/export_extrinsic", *map(str, args)], capture_output=True, text=True, check=False
         )
 
-    def export(self, *args):
-        done = self.run_export(*args, "--rig", self.folder / "rig.yaml")
+    def output_of_export(self, *args):
+        done = self.run_export(*args)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
+    def export(self, *args):
+        return self.output_of_export(*args, "--rig", self.folder / "rig.yaml")
+
     def test_each_format_reads_back(self):
-        for name, (q, t) in EXTRINSICS.items():
-            wanted = transform(rotation_of_quaternion(*q), t)
-            for form in FORMATS:
-                with self.subTest(extrinsic=name, format=form):
-                    text = self.export(
-                        self.result(q, t), "--format", form, "--parent", "velodyne", "--child", "front"
-                    )
-                    T_camera_lidar, parent, child = globals()["read_" + form](text)
-                    self.assertEqual((parent, child), ("velodyne", "front"))
-                    np.testing.assert_allclose(T_camera_lidar, wanted, rtol=0, atol=1e-9)
+        def check(wanted, form, text):
+            T_camera_lidar, parent, child = globals()["read_" + form](text)
+            self.assertEqual((parent, child), ("velodyne", "front"))
+            np.testing.assert_allclose(T_camera_lidar, wanted, rtol=0, atol=1e-9)
+
+        self.for_each_export(check, "--parent", "velodyne", "--child", "front")
 
     def test_each_format_lands_on_the_same_pixel(self):
-        q, t = EXTRINSICS["typical"]
-        wanted = transform(rotation_of_quaternion(*q), t)
-        points_lidar_m = apply(np.linalg.inv(wanted), POINTS_CAMERA_M)
-        for form in FORMATS:
-            with self.subTest(format=form):
-                text = self.export(self.result(q, t), "--format", form)
-                T_camera_lidar = globals()["read_" + form](text)[0]
-                pixels = project(apply(T_camera_lidar, points_lidar_m))
-                # 1e-9 m at 2 m and 750 px focal length is 4e-7 px.
-                np.testing.assert_allclose(pixels, project(POINTS_CAMERA_M), rtol=0, atol=1e-6)
+        def check(wanted, form, text):
+            T_camera_lidar = globals()["read_" + form](text)[0]
+            points_lidar_m = apply(np.linalg.inv(wanted), POINTS_CAMERA_M)
+            pixels = project(apply(T_camera_lidar, points_lidar_m))
+            # 1e-9 m at 2 m and 750 px focal length is 4e-7 px.
+            np.testing.assert_allclose(pixels, project(POINTS_CAMERA_M), rtol=0, atol=1e-6)
+
+        self.for_each_export(check)
 
     def test_the_example_in_the_comments_is_true(self):
-        for name, (q, t) in EXTRINSICS.items():
-            T_camera_lidar = transform(rotation_of_quaternion(*q), t)
-            for form in FORMATS:
-                with self.subTest(extrinsic=name, format=form):
-                    text = self.export(self.result(q, t), "--format", form)
-                    example = re.search(
-                        r"Example: p_lidar = \((.*?)\) m is p_camera = \((.*?)\) m, pixel \((.*?)\)", text
-                    )
-                    p_lidar, p_camera, pixel = (
-                        np.array([[float(x) for x in group.split(",")]]) for group in example.groups()
-                    )
-                    # Printed to 1e-6 m and 1e-3 px.
-                    np.testing.assert_allclose(apply(T_camera_lidar, p_lidar), p_camera, atol=2e-6, rtol=0)
-                    np.testing.assert_allclose(project(p_camera), pixel, atol=1e-3, rtol=0)
+        def check(T_camera_lidar, _, text):
+            example = re.search(
+                r"Example: p_lidar = \((.*?)\) m is p_camera = \((.*?)\) m, pixel \((.*?)\)", text
+            )
+            p_lidar, p_camera, pixel = (
+                np.array([[float(x) for x in group.split(",")]]) for group in example.groups()
+            )
+            # Printed to 1e-6 m and 1e-3 px.
+            np.testing.assert_allclose(apply(T_camera_lidar, p_lidar), p_camera, atol=2e-6, rtol=0)
+            np.testing.assert_allclose(project(p_camera), pixel, atol=1e-3, rtol=0)
+
+        self.for_each_export(check)
 
     def test_out_writes_the_same_text(self):
         result = self.result(*EXTRINSICS["typical"])
@@ -294,7 +297,8 @@ class ExportExtrinsic(unittest.TestCase):
         self.export(result, "--format", "urdf", "--out", out)
         self.assertEqual(out.read_text(), self.export(result, "--format", "urdf"))
 
-    def assert_refused(self, done, *parts):
+    def assert_refused(self, args, *parts):
+        done = self.run_export(*args)
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stdout, "")
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
@@ -303,22 +307,16 @@ class ExportExtrinsic(unittest.TestCase):
 
     def test_refuses_in_one_line(self):
         result = self.result(*EXTRINSICS["typical"])
-        self.assert_refused(self.run_export(result, "--format", "sdf"), "'sdf'", *FORMATS)
-        self.assert_refused(self.run_export(self.folder / "none", "--format", "ros"), "none")
-        self.assert_refused(self.run_export(result, "--format", "mrcal"), "mrcal", "--rig")
-        self.assert_refused(
-            self.run_export(result, "--format", "ros", "--child", "a b"), "child", "'a b'"
-        )
-        self.assert_refused(
-            self.run_export(result, "--format", "ros", "--child", "lidar"), "must differ"
-        )
+        self.assert_refused([result, "--format", "sdf"], "'sdf'", *FORMATS)
+        self.assert_refused([self.folder / "none", "--format", "ros"], "none")
+        self.assert_refused([result, "--format", "mrcal"], "mrcal", "--rig")
+        self.assert_refused([result, "--format", "ros", "--child", "a b"], "child", "'a b'")
+        self.assert_refused([result, "--format", "ros", "--child", "lidar"], "must differ")
         rig = self.folder / "fisheye.yaml"
         rig.write_text(
             RIG.replace("plumb_bob", "equidistant").replace(str(DISTORTION), str(DISTORTION[:4]))
         )
-        self.assert_refused(
-            self.run_export(result, "--format", "mrcal", "--rig", rig), "mrcal", "equidistant"
-        )
+        self.assert_refused([result, "--format", "mrcal", "--rig", rig], "mrcal", "equidistant")
 
     def rig_result(self):
         """rig_extrinsics.yaml of two lidars and two cameras, and T_top_NAME of each but the top."""
@@ -348,9 +346,7 @@ class ExportExtrinsic(unittest.TestCase):
                 np.testing.assert_allclose(T_top_child, wanted[name], rtol=0, atol=1e-9)
 
         def export(form):
-            done = self.run_export(self.folder, "--format", form)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            return done.stdout
+            return self.output_of_export(self.folder, "--format", form)
 
         def tree_of(parts, read):
             tree = {}
@@ -393,10 +389,8 @@ class ExportExtrinsic(unittest.TestCase):
 
     def test_a_whole_rig_is_refused_in_one_line_where_a_format_holds_one_camera(self):
         self.rig_result()
-        self.assert_refused(self.run_export(self.folder, "--format", "opencv"), "'opencv'", "urdf")
-        self.assert_refused(
-            self.run_export(self.folder, "--format", "ros", "--child", "x"), "--child", "rig"
-        )
+        self.assert_refused([self.folder, "--format", "opencv"], "'opencv'", "urdf")
+        self.assert_refused([self.folder, "--format", "ros", "--child", "x"], "--child", "rig")
 
 
 if __name__ == "__main__":

@@ -155,10 +155,23 @@ TEST_F(SimulatedReport, HasAPictureOfEachSample) {
   }
 }
 
-TEST_F(SimulatedReport, HasOneCloudInTheImagesColours) {
+/// The picture before its description, as the page holds it.
+std::string PictureBefore(const std::string& description, const std::string& page) {
+  const std::size_t end = page.find(description);
+  const std::size_t start = page.rfind("data:image/jpeg;base64,", end);
+  if (end == std::string::npos || start == std::string::npos) return "";
+  return page.substr(start, page.find('"', start) - start);
+}
+
+TEST_F(SimulatedReport, HasOneCloudInTheImagesColoursByTheResultAndByAWrongOne) {
   const std::string page = ReadWholeFile(Path("out/report.html"));
-  EXPECT_THAT(page, HasSubstr("the lidar's points in the image's colours by the refined"));
-  EXPECT_THAT(page, HasSubstr("is nearest to the middle distance"));
+  EXPECT_THAT(page, HasSubstr("is nearest to the median distance"));
+  const std::string right =
+      PictureBefore("the lidar's points in the image's colours by the refined extrinsic", page);
+  const std::string wrong = PictureBefore("The same by an extrinsic that is turned", page);
+  EXPECT_GT(right.size(), 10000U);
+  EXPECT_GT(wrong.size(), 10000U);
+  EXPECT_TRUE(right != wrong);  // not EXPECT_NE, which would print both
 }
 
 TEST_F(SimulatedReport, JsonSaysWhatTheResultSays) {

@@ -31,7 +31,7 @@ namespace {
 struct CalibrateRigArgs {
   std::filesystem::path rig;
   std::filesystem::path log;
-  std::vector<std::string> bag;               ///< Instead of log: a recording of ROS, its paths.
+  std::vector<std::string> bag;  ///< Instead of log: a recording of ROS, its paths.
   std::multimap<std::string, std::string> topics;  ///< Of bag, by sensor.
   std::filesystem::path out;
   std::string reference;  ///< Empty: the first lidar.

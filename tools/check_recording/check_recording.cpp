@@ -1,4 +1,5 @@
-// check_recording: what LCM logs hold, channel by channel, and what of the sensors' frames they lack.
+// check_recording: what LCM logs hold, channel by channel, and what of the sensors' frames they
+// lack.
 
 #include <cstdio>
 #include <filesystem>

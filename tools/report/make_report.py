@@ -128,7 +128,7 @@ def poses(samples, folder):
 def coloured(samples, folder):
     """Of the one sample that has them, the pictures of its points in the image's colours."""
     for sample in samples:
-        pictures = [picture(folder, sample, kind) for kind in ("coloured", "miscoloured")]
+        pictures = [picture(folder, sample, kind) for kind in ("coloured", "coloured_by_turned")]
         if all(pictures):
             return {"id": sample["id"], "range_m": sample["range_m"], "right": pictures[0], "wrong": pictures[1]}
     return None

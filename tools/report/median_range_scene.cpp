@@ -1,4 +1,4 @@
-#include "report/middle_scene.hpp"
+#include "report/median_range_scene.hpp"
 
 #include <cmath>
 #include <utility>
@@ -8,24 +8,24 @@
 namespace voqcal {
 namespace {
 
-double DistanceM(const BoardSample& sample) { return sample.lidar.pose.centre_m.norm(); }
+double RangeM(const BoardSample& sample) { return sample.lidar.pose.centre_m.norm(); }
 
-double MiddleDistanceM(const std::vector<BoardSample>& samples) {
-  std::vector<double> distances_m;
-  for (const BoardSample& sample : samples) distances_m.push_back(DistanceM(sample));
-  return Median(distances_m);
+double MedianRangeM(const std::vector<BoardSample>& samples) {
+  std::vector<double> ranges_m;
+  for (const BoardSample& sample : samples) ranges_m.push_back(RangeM(sample));
+  return Median(ranges_m);
 }
 
 }  // namespace
 
-MiddleScene::MiddleScene(const std::vector<BoardSample>& samples)
-    : middle_m_(MiddleDistanceM(samples)) {}
+MedianRangeScene::MedianRangeScene(const std::vector<BoardSample>& samples)
+    : median_range_m_(MedianRangeM(samples)) {}
 
-void MiddleScene::Offer(const BoardSample& sample,
-                        const cv::Mat& image,
-                        const PointCloud& sweep_lidar_m) {
+void MedianRangeScene::Offer(const BoardSample& sample,
+                             const cv::Mat& image,
+                             const PointCloud& sweep_lidar_m) {
   const auto rank = [this](const BoardSample& of) {
-    return std::make_pair(std::abs(DistanceM(of) - middle_m_), of.id);
+    return std::make_pair(std::abs(RangeM(of) - median_range_m_), of.id);
   };
   const std::lock_guard<std::mutex> lock(offering_);
   if (!chosen_ || rank(sample) < rank(*chosen_->sample)) {

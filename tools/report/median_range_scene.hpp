@@ -12,9 +12,9 @@
 namespace voqcal {
 
 /// Of all scenes that are offered, the one whose board's distance from the lidar is nearest to the
-/// middle of those of `samples`: neither so near that the board hides all else, nor so far that few
+/// median of those of `samples`: neither so near that the board hides all else, nor so far that few
 /// points are on it.
-class MiddleScene {
+class MedianRangeScene {
  public:
   struct Scene {
     const BoardSample* sample;
@@ -22,7 +22,7 @@ class MiddleScene {
     PointCloud sweep_lidar_m;
   };
 
-  explicit MiddleScene(const std::vector<BoardSample>& samples);
+  explicit MedianRangeScene(const std::vector<BoardSample>& samples);
 
   /// May be called by several threads at once, in any order; `sample` is referred to.
   void Offer(const BoardSample& sample, const cv::Mat& image, const PointCloud& sweep_lidar_m);
@@ -31,7 +31,7 @@ class MiddleScene {
   const std::optional<Scene>& Chosen() const { return chosen_; }
 
  private:
-  double middle_m_;
+  double median_range_m_;
   std::mutex offering_;
   std::optional<Scene> chosen_;
 };

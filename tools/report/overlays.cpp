@@ -20,8 +20,8 @@
 #include "messaging/convert_image.hpp"
 #include "messaging/convert_points.hpp"
 #include "messaging/session_scenes.hpp"
-#include "report/aside_view.hpp"
-#include "report/middle_scene.hpp"
+#include "report/median_range_scene.hpp"
+#include "report/oblique_view.hpp"
 
 namespace voqcal {
 namespace {
@@ -173,18 +173,18 @@ Eigen::Isometry3d Turned(const Eigen::Isometry3d& T_camera_lidar) {
   return Eigen::AngleAxisd(3.0 * kRadPerDeg, Eigen::Vector3d::UnitY()) * T_camera_lidar;
 }
 
-void WriteAsideViews(const MiddleScene::Scene& scene,
-                     const CameraModel& camera,
-                     const Eigen::Isometry3d& T_camera_lidar,
-                     const std::filesystem::path& folder) {
+void WriteObliqueViews(const MedianRangeScene::Scene& scene,
+                       const CameraModel& camera,
+                       const Eigen::Isometry3d& T_camera_lidar,
+                       const std::filesystem::path& folder) {
   const BoardSample& sample = *scene.sample;
-  const AsideView view = AsideViewOf(sample.lidar.pose, T_camera_lidar);
+  const ObliqueView view = ObliqueViewOf(sample.lidar.pose, T_camera_lidar);
   const auto write = [&](const char* kind, const Eigen::Isometry3d& T_colours_lidar) {
     const auto points = PointsInColour(scene.sweep_lidar_m, scene.image, camera, T_colours_lidar);
-    WritePicture(DrawAsideView(points, view), PathOf(folder, sample.id, kind));
+    WritePicture(DrawObliqueView(points, view), PathOf(folder, sample.id, kind));
   };
   write("coloured", T_camera_lidar);
-  write("miscoloured", Turned(T_camera_lidar));
+  write("coloured_by_turned", Turned(T_camera_lidar));
 }
 
 }  // namespace
@@ -225,7 +225,7 @@ void WriteOverlays(const Rig& rig,
   std::map<std::int64_t, const BoardSample*> samples;
   const std::vector<BoardSample> all = run.SamplesAsChosen();
   for (const BoardSample& sample : all) samples[sample.id] = &sample;
-  MiddleScene middle(UsedOf(all, result));
+  MedianRangeScene median_range(UsedOf(all, result));
   const auto is_kept = [&](const SessionScene& scene) {
     // Others were discarded later, or are of a log that was joined to this.
     const auto sample = samples.find(scene.sample_id);
@@ -237,7 +237,7 @@ void WriteOverlays(const Rig& rig,
     const PictureGrounds grounds =
         kept != nullptr ? *kept : GroundsOf(sample, FromMessage(messages.image), rig.camera);
     const PointCloud sweep_lidar_m = FromMessage(messages.sweep);
-    if (IsUsed(sample, result)) middle.Offer(sample, grounds.scene, sweep_lidar_m);
+    if (IsUsed(sample, result)) median_range.Offer(sample, grounds.scene, sweep_lidar_m);
     const auto write = [&](const char* kind, const cv::Mat& picture) {
       if (!picture.empty()) WritePicture(picture, PathOf(folder, sample.id, kind));
     };
@@ -254,8 +254,8 @@ void WriteOverlays(const Rig& rig,
     write("before", BoardWith(grounds, points_by(T_before), outline_by(T_before)));
     write("after", BoardWith(grounds, points_after, outline_by(T_after)));
   });
-  if (middle.Chosen()) {
-    WriteAsideViews(*middle.Chosen(), rig.camera, result.T_camera_lidar, folder);
+  if (median_range.Chosen()) {
+    WriteObliqueViews(*median_range.Chosen(), rig.camera, result.T_camera_lidar, folder);
   }
 }
 

@@ -39,9 +39,9 @@ cv::Vec3b RangeColourBgr(double range_m);
 
 /// Writes the pictures of every sample whose scene is in samples.lcm: NNNN_scene.jpg (by the
 /// refined extrinsic), NNNN_before.jpg and NNNN_after.jpg (the board by the average and by the
-/// refined one); NNNN is the sample's id. Of the used one in the middle (MiddleScene) besides:
-/// NNNN_coloured.jpg, its points in the image's colours, and NNNN_miscoloured.jpg, the same by an
-/// extrinsic that is turned by 3 degrees.
+/// refined one); NNNN is the sample's id. Of the used one of median range besides
+/// (MedianRangeScene): NNNN_coloured.jpg, its points in the image's colours, and
+/// NNNN_coloured_by_turned.jpg, the same by an extrinsic that is turned by 3 degrees.
 /// @throws std::runtime_error naming the file and the cause.
 void WriteOverlays(const Rig& rig,
                    const OfflineRun& run,

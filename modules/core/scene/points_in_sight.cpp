@@ -8,16 +8,22 @@ namespace voqcal {
 namespace {
 
 // Scan lines of common lidars are at most 2 degrees (0.035 rad) apart.
-constexpr double kReachRad = 0.04;
 constexpr int kReachCells = 4;
-// Of the range: less is noise, or a surface that is seen at a slant.
-constexpr float kMaxNearerShare = 0.9F;
+constexpr double kCellRad = 0.01;
+// Five times the noise of common lidars.
+constexpr double kMinNearerM = 0.1;
+
+/// By how much a point so many cells away has to be nearer: more than a wall at 45 degrees is, as
+/// both are in a corner.
+float MinNearerM(int num_cells, float range_m) {
+  return static_cast<float>(std::max(kMinNearerM, (num_cells + 1) * kCellRad * range_m));
+}
 
 /// How far the nearest point is in each cell of the image.
 class NearestRanges {
  public:
   explicit NearestRanges(const CameraModel& camera)
-      : cell_px_(std::max(1.0, camera.fx_px * kReachRad / kReachCells)),
+      : cell_px_(std::max(1.0, camera.fx_px * kCellRad)),
         num_columns_(NumCells(camera.width_px)),
         num_rows_(NumCells(camera.height_px)),
         ranges_m_(static_cast<std::size_t>(num_columns_ * num_rows_), kEmpty) {}
@@ -33,7 +39,8 @@ class NearestRanges {
     const int row = CellOf(pixel_px.y());
     const auto is_nearer_towards = [&](int right, int down) {
       for (int i = 1; i <= kReachCells; ++i) {
-        if (RangeAt(column + i * right, row + i * down) < kMaxNearerShare * range_m) return true;
+        const float nearer_m = range_m - RangeAt(column + i * right, row + i * down);
+        if (nearer_m > MinNearerM(i, range_m)) return true;
       }
       return false;
     };

@@ -15,8 +15,10 @@ namespace voqcal {
 /// image, and where a nearer surface hides it.
 ///
 /// A sweep shows a surface by points with gaps between them, as wide as its scan lines are apart:
-/// hidden is what has nearer points on both sides, left and right or above and below. So what is
-/// beside a surface is in sight, but for what is within 0.01 rad of an upright or level edge.
+/// hidden is what has nearer points on both sides, left and right or above and below. Nearer is by
+/// more than 0.1 m and than 2 % of the range (5 % where the next points are 0.04 rad away): less is
+/// noise, or the walls of a corner. So what is beside a surface is in sight, but for what is within
+/// 0.01 rad of an upright or level edge.
 std::vector<std::optional<Eigen::Vector2d>> PixelsInSight(const PointCloud& cloud_lidar_m,
                                                           const CameraModel& camera,
                                                           const Eigen::Isometry3d& T_camera_lidar);

@@ -12,8 +12,14 @@ namespace {
 
 const cv::Vec3b kRed(0, 0, 200);   // of what is near
 const cv::Vec3b kBlue(200, 0, 0);  // of what is behind it
-constexpr double kNearM = 2.0;
-constexpr double kFarM = 6.0;
+constexpr double kStep = 0.0035;
+
+/// A square of a metre before a wall.
+struct TestScene {
+  double square_m = 2.0;
+  double wall_m = 6.0;
+  double line_step = 0.0349;  ///< Scan lines 2 degrees apart.
+};
 
 /// The lidar is below the camera: it sees past a near object's lower edge what that hides.
 Eigen::Isometry3d BelowTheCamera() {
@@ -27,42 +33,69 @@ bool IsOnSquare(const Eigen::Vector3d& point_camera_m) {
   return point_camera_m.head<2>().cwiseAbs().maxCoeff() < 0.5;
 }
 
-bool IsFar(const ColouredPoint& point) { return point.position_lidar_m.x() > 4; }
+bool IsOnWall(const Eigen::Vector3d& point_lidar_m, const TestScene& scene) {
+  return point_lidar_m.x() > 0.5 * (scene.square_m + scene.wall_m);
+}
 
-/// Scan lines 2 degrees apart, as far as a square of a metre before a wall lets them.
-PointCloud SquareBeforeAWall() {
-  constexpr double kLineStep = 0.0349;
-  constexpr double kStep = 0.0035;
-  const Eigen::Isometry3d T_camera_lidar = BelowTheCamera();
+/// A ray each 0.2 degrees along scan lines; `distance_m` of a ray is how long it is, in lengths of
+/// the ray.
+template <typename Distance>
+PointCloud Sweep(double line_step, const Distance& distance_m) {
+  const int num_lines_up = static_cast<int>(0.42 / line_step);
   PointCloud cloud;
-  for (int line = -12; line <= 12; ++line) {
+  for (int line = -num_lines_up; line <= num_lines_up; ++line) {
     for (int column = -150; column <= 150; ++column) {
-      const Eigen::Vector3d ray_lidar(1, kStep * column, kLineStep * line);
-      Eigen::Vector3d point_m = kNearM * ray_lidar;
-      if (!IsOnSquare(T_camera_lidar * point_m)) point_m = kFarM * ray_lidar;
+      const Eigen::Vector3d ray_lidar(1, kStep * column, line_step * line);
+      const Eigen::Vector3d point_m = distance_m(ray_lidar) * ray_lidar;
       cloud.points.emplace_back().position_m = point_m.cast<float>();
     }
   }
   return cloud;
 }
 
+PointCloud SquareBeforeAWall(const TestScene& scene) {
+  return Sweep(scene.line_step, [&](const Eigen::Vector3d& ray_lidar) {
+    const bool is_on_square = IsOnSquare(BelowTheCamera() * (scene.square_m * ray_lidar));
+    return is_on_square ? scene.square_m : scene.wall_m;
+  });
+}
+
 /// As the camera sees them, at half its size.
-cv::Mat ImageOfSquareBeforeAWall(const CameraModel& camera) {
+cv::Mat ImageOfSquareBeforeAWall(const TestScene& scene, const CameraModel& camera) {
   cv::Mat image(camera.height_px / 2, camera.width_px / 2, CV_8UC3);
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
       const auto ray = camera.Unproject(Eigen::Vector2d(2 * x + 0.5, 2 * y + 0.5));
-      const bool is_near = ray && IsOnSquare(*ray * (kNearM / ray->z()));
+      const bool is_near = ray && IsOnSquare(*ray * (scene.square_m / ray->z()));
       image.at<cv::Vec3b>(y, x) = is_near ? kRed : kBlue;
     }
   }
   return image;
 }
 
-/// Whether the square hides this point of the wall.
-bool IsBehindSquare(const ColouredPoint& point) {
-  const Eigen::Vector3d point_camera_m = BelowTheCamera() * point.position_lidar_m;
-  return IsOnSquare(point_camera_m * (kNearM / point_camera_m.z()));
+struct Counts {
+  int num_behind = 0;  ///< Of the points in the image, those that the square hides.
+  int num_behind_in_sight = 0;
+  int num_beside = 0;
+  int num_beside_hidden = 0;
+};
+
+Counts CountsOf(const TestScene& scene) {
+  const CameraModel camera = test::SmallCamera(LensModel::kPlumbBob);
+  const PointCloud cloud = SquareBeforeAWall(scene);
+  const auto pixels_px = PixelsInSight(cloud, camera, BelowTheCamera());
+  Counts counts;
+  for (std::size_t i = 0; i < pixels_px.size(); ++i) {
+    const Eigen::Vector3d point_m = cloud.points[i].position_m.cast<double>();
+    const Eigen::Vector3d point_camera_m = BelowTheCamera() * point_m;
+    if (!camera.Contains(camera.Project(point_camera_m))) continue;
+    const bool is_behind = IsOnWall(point_m, scene) &&
+                           IsOnSquare(point_camera_m * (scene.square_m / point_camera_m.z()));
+    ++(is_behind ? counts.num_behind : counts.num_beside);
+    if (is_behind && pixels_px[i]) ++counts.num_behind_in_sight;
+    if (!is_behind && !pixels_px[i]) ++counts.num_beside_hidden;
+  }
+  return counts;
 }
 
 class OfEachLens : public ::testing::TestWithParam<LensModel> {};
@@ -70,14 +103,16 @@ class OfEachLens : public ::testing::TestWithParam<LensModel> {};
 // At the square's rim one pixel of the small image may be of either: 2 px of 420 at 2 m, 1 cm.
 TEST_P(OfEachLens, PaintsASquareAndTheWallBehindItEachInItsColour) {
   const CameraModel camera = test::SmallCamera(GetParam());
+  const TestScene scene;
   const auto points = PointsInColour(
-      SquareBeforeAWall(), ImageOfSquareBeforeAWall(camera), camera, BelowTheCamera());
+      SquareBeforeAWall(scene), ImageOfSquareBeforeAWall(scene, camera), camera, BelowTheCamera());
   int num_near = 0;
   int num_far = 0;
   int num_wrong = 0;
   for (const ColouredPoint& point : points) {
-    ++(IsFar(point) ? num_far : num_near);
-    if (point.colour_bgr != (IsFar(point) ? kBlue : kRed)) ++num_wrong;
+    const bool is_far = IsOnWall(point.position_lidar_m, scene);
+    ++(is_far ? num_far : num_near);
+    if (point.colour_bgr != (is_far ? kBlue : kRed)) ++num_wrong;
   }
   EXPECT_GT(num_near, 1500);
   EXPECT_GT(num_far, 1500);
@@ -86,31 +121,36 @@ TEST_P(OfEachLens, PaintsASquareAndTheWallBehindItEachInItsColour) {
 INSTANTIATE_TEST_SUITE_P(Points, OfEachLens, ::testing::ValuesIn(test::kLenses));
 
 TEST(PixelsInSight, AreThoseOfWhatIsBesideTheSquareNotBehindIt) {
-  const CameraModel camera = test::SmallCamera(LensModel::kPlumbBob);
-  const PointCloud cloud = SquareBeforeAWall();
-  const auto pixels_px = PixelsInSight(cloud, camera, BelowTheCamera());
-  ASSERT_EQ(pixels_px.size(), cloud.points.size());
-  int num_behind = 0;
-  int num_behind_in_sight = 0;
-  int num_beside = 0;
-  int num_beside_hidden = 0;
-  for (std::size_t i = 0; i < pixels_px.size(); ++i) {
-    const ColouredPoint point{cloud.points[i].position_m.cast<double>(), {}};
-    const Eigen::Vector3d point_camera_m = BelowTheCamera() * point.position_lidar_m;
-    const bool is_in_image = camera.Contains(camera.Project(point_camera_m));
-    const bool is_behind = IsFar(point) && IsBehindSquare(point);
-    num_behind += is_behind && is_in_image;
-    num_behind_in_sight += is_behind && pixels_px[i];
-    num_beside += !is_behind && is_in_image;
-    num_beside_hidden += !is_behind && is_in_image && !pixels_px[i];
-  }
-  EXPECT_GT(num_behind, 200);
+  const Counts counts = CountsOf({});
+  EXPECT_GT(counts.num_behind, 200);
   // Below the square's lowest scan line nothing tells how far down it reaches: one of the four
   // lines that it hides, at most.
-  EXPECT_LT(num_behind_in_sight, 0.25 * num_behind);
+  EXPECT_LT(counts.num_behind_in_sight, 0.25 * counts.num_behind);
   // Along its three other sides, 0.5 rad each, half a cell of 0.01 rad on average; of the image's
   // 1.5 x 0.94 rad: 0.0075 / 1.4.
-  EXPECT_LT(num_beside_hidden, 0.006 * num_beside);
+  EXPECT_LT(counts.num_beside_hidden, 0.006 * counts.num_beside);
+}
+
+// The lidar sees 2 cm of the wall that the square hides from the camera.
+TEST(PixelsInSight, AreNotThoseOfAWallCloseBehindTheSquare) {
+  const Counts counts = CountsOf({4.0, 4.3, kStep});
+  EXPECT_GT(counts.num_behind, 60);
+  // At each end a cell of 0.01 rad at most, of 0.25 rad.
+  EXPECT_LE(counts.num_behind_in_sight, 0.08 * counts.num_behind);
+  EXPECT_LT(counts.num_beside_hidden, 0.006 * counts.num_beside);
+}
+
+// Both walls of a corner come nearer, to its left and to its right.
+TEST(PixelsInSight, AreAllOfARightAngledCorner) {
+  const PointCloud cloud = Sweep(
+      kStep, [](const Eigen::Vector3d& ray_lidar) { return 5 / (1 + std::abs(ray_lidar.y())); });
+  const CameraModel camera = test::SmallCamera(LensModel::kPlumbBob);
+  const auto pixels_px = PixelsInSight(cloud, camera, BelowTheCamera());
+  for (std::size_t i = 0; i < pixels_px.size(); ++i) {
+    const Eigen::Vector3d point_m = cloud.points[i].position_m.cast<double>();
+    const bool is_in_image = camera.Contains(camera.Project(BelowTheCamera() * point_m));
+    EXPECT_EQ(pixels_px[i].has_value(), is_in_image) << point_m.transpose();
+  }
 }
 
 TEST(PixelsInSight, AreNoneBehindTheCameraOutsideTheImageAndOfNoReturn) {

@@ -1,13 +1,17 @@
-// The colours of a sweep's points on the dashboard's page.
+// The colours of a sweep's points, and of the style sheet, on the dashboard's page.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 import { buildSync } from "esbuild";
 
-const source = fileURLToPath(new URL("../../../modules/dashboard/page/src/cloud_colours.ts", import.meta.url));
-const { text } = buildSync({ entryPoints: [source], bundle: true, format: "esm", write: false }).outputFiles[0];
-const { cloudColours } = await import(`data:text/javascript,${encodeURIComponent(text)}`);
+function importSource(name) {
+  const source = fileURLToPath(new URL(`../../../modules/dashboard/page/src/${name}`, import.meta.url));
+  const { text } = buildSync({ entryPoints: [source], bundle: true, format: "esm", write: false }).outputFiles[0];
+  return import(`data:text/javascript,${encodeURIComponent(text)}`);
+}
+const { cloudColours } = await importSource("cloud_colours.ts");
+const { themeColour } = await importSource("colours.ts");
 
 const UNSEEN = [0.5, 0.25, 0.125]; // as a Float32Array has them
 const NOT_SEEN = -32768;
@@ -48,4 +52,22 @@ test("without an image, or an extrinsic, all points are dim", () => {
   const dim = [UNSEEN, UNSEEN, UNSEEN, UNSEEN];
   assert.deepEqual(colours(cloud([0, 0, 2, 1, 1, 3, 3, 2]), null, UNSEEN), dim);
   assert.deepEqual(colours(cloud(null), IMAGE, UNSEEN), dim);
+});
+
+test("a colour of the style sheet is computed once for each scheme", () => {
+  let isDark = false;
+  let numComputed = 0;
+  globalThis.matchMedia = () => ({ matches: isDark });
+  globalThis.document = { createElement: () => ({ style: {}, remove() {} }), body: { append() {} } };
+  globalThis.getComputedStyle = ({ style }) => {
+    numComputed += 1;
+    return { color: `${style.color} ${isDark ? "dark" : "light"}` };
+  };
+  const ask = () => [themeColour("unseen"), themeColour("accent"), themeColour("unseen")];
+  assert.deepEqual(ask(), ["var(--unseen) light", "var(--accent) light", "var(--unseen) light"]);
+  isDark = true;
+  assert.deepEqual(ask(), ["var(--unseen) dark", "var(--accent) dark", "var(--unseen) dark"]);
+  isDark = false;
+  assert.equal(themeColour("unseen"), "var(--unseen) light");
+  assert.equal(numComputed, 4);
 });

@@ -46,8 +46,18 @@ function stepOf(range_m: number): number {
   return Math.round(NUM_STEPS * rangeShare(range_m));
 }
 
-/** A colour of the style sheet, which knows whether it is dark: as "rgb(...)". */
+const themeColours = new Map<string, string>();
+
+/** A colour of the style sheet, which knows whether it is dark: as "rgb(...)". Computed once for each scheme. */
 export function themeColour(name: string): string {
+  const key = `${name} ${matchMedia("(prefers-color-scheme: dark)").matches}`;
+  const colour = themeColours.get(key) ?? computedColour(name);
+  themeColours.set(key, colour);
+  return colour;
+}
+
+/** Has the browser recalculate styles. */
+function computedColour(name: string): string {
   const probe = document.createElement("i");
   probe.style.color = `var(--${name})`;
   document.body.append(probe);

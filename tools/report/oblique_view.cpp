@@ -1,4 +1,4 @@
-#include "report/aside_view.hpp"
+#include "report/oblique_view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,12 +21,13 @@ constexpr double kBoardHeightShare = 0.6;
 
 constexpr double kAsideDeg = 35.0;
 constexpr double kAboveDeg = 20.0;
+/// Of the board's distance: a ceiling or a wall by the eye would cover half of the picture.
+constexpr double kNearestShare = 0.5;
 
 /// Half of what scan lines are apart, 2 degrees at most: patches of neighbours touch. Along a line
 /// points are closer.
 constexpr double kPatchRad = 0.019;
 constexpr double kWidthShare = 0.4;
-constexpr double kNearestM = 0.3;
 
 /// A picture with the depth of what is in it.
 struct Canvas {
@@ -53,7 +54,7 @@ struct Patch {
 };
 
 /// Longest across the lidar's scan lines, which are cones about its z axis.
-Patch PatchOf(const Eigen::Vector3d& point_lidar_m, const AsideView& view, const cv::Size& size) {
+Patch PatchOf(const Eigen::Vector3d& point_lidar_m, const ObliqueView& view, const cv::Size& size) {
   const Eigen::Vector3d ray_lidar = point_lidar_m.normalized();
   const Eigen::Vector3d across_lidar = Eigen::Vector3d::UnitZ() - ray_lidar.z() * ray_lidar;
   const Eigen::Vector3d centre_view_m = view.T_view_lidar * point_lidar_m;
@@ -94,7 +95,7 @@ double RadiusM(const BoardPose& board_m) {
 
 }  // namespace
 
-AsideView AsideViewOf(const BoardPose& board_lidar_m, const Eigen::Isometry3d& T_camera_lidar) {
+ObliqueView ObliqueViewOf(const BoardPose& board_lidar_m, const Eigen::Isometry3d& T_camera_lidar) {
   const Eigen::Isometry3d T_lidar_camera = T_camera_lidar.inverse();
   const Eigen::Vector3d up_lidar = -T_lidar_camera.linear().col(1);
   const Eigen::Vector3d to_camera_m = T_lidar_camera.translation() - board_lidar_m.centre_m;
@@ -108,16 +109,19 @@ AsideView AsideViewOf(const BoardPose& board_lidar_m, const Eigen::Isometry3d& T
   T_lidar_view.linear().col(2) = -to_eye_m.normalized();
   T_lidar_view.linear().col(0) = (-to_eye_m).cross(up_lidar).normalized();
   T_lidar_view.linear().col(1) = T_lidar_view.linear().col(2).cross(T_lidar_view.linear().col(0));
-  return {T_lidar_view.inverse(), kBoardPx * to_eye_m.norm() / RadiusM(board_lidar_m)};
+  const double distance_m = to_eye_m.norm();
+  return {T_lidar_view.inverse(),
+          kBoardPx * distance_m / RadiusM(board_lidar_m),
+          kNearestShare * distance_m};
 }
 
-cv::Mat DrawAsideView(const std::vector<ColouredPoint>& points, const AsideView& view) {
+cv::Mat DrawObliqueView(const std::vector<ColouredPoint>& points, const ObliqueView& view) {
   const cv::Size size(kOversampling * kWidthPx, kOversampling * kHeightPx);
   const cv::Scalar ground_bgr(172, 132, 100);  // unlike greys, whatever their shade
   Canvas canvas{cv::Mat(size, CV_8UC3, ground_bgr),
                 cv::Mat(size, CV_32FC1, std::numeric_limits<float>::infinity())};
   for (const ColouredPoint& point : points) {
-    if ((view.T_view_lidar * point.position_lidar_m).z() < kNearestM) continue;
+    if ((view.T_view_lidar * point.position_lidar_m).z() < view.nearest_m) continue;
     DrawPatch(PatchOf(point.position_lidar_m, view, size), point.colour_bgr, &canvas);
   }
   cv::Mat picture;

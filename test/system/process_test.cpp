@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,6 +31,7 @@ using ::testing::HasSubstr;
 const std::vector<std::string> kModules = AllModuleNames();
 const std::vector<std::string> kTools = {"calibrate",
                                          "calibrate_lens",
+                                         "check_recording",
                                          "check_rig",
                                          "command",
                                          "compare",
@@ -111,6 +113,22 @@ INSTANTIATE_TEST_SUITE_P(Signals,
                          [](const auto& signal) {
                            return signal.param == SIGTERM ? "Term" : "Int";
                          });
+
+TEST(Record, SaysAtItsEndWhatTheRecordingHolds) {
+  const test::TemporaryFolder folder;
+  const std::string rig_path = folder.Write("rig.yaml", test::ShortRigText());
+  const auto log = folder.path() / "raw.lcm";
+  test::Process record({test::Tool("record"), rig_path, log}, folder.path() / "record.txt");
+  Bus bus(LoadRig(rig_path).lcm_url);
+  do {  // lcm-logger listens, and has written
+    bus.Publish("MODULE_STATUS", module_status_t{});
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  } while (!std::filesystem::exists(log) || std::filesystem::file_size(log) == 0);
+  record.Signal(SIGTERM);
+  EXPECT_EQ(record.Wait(), 0);
+  EXPECT_THAT(ReadWholeFile(folder.path() / "record.txt"),
+              ContainsRegex("MODULE_STATUS +[0-9]+(.|\n)*unknown    no images; no sweeps"));
+}
 
 /// Shows stops to a sample collector on the network and sees its samples.
 class CollectorSession {

@@ -51,6 +51,7 @@ void PrintChannels(const RecordingContents& contents) {
 void CheckRecording(const CheckRecordingArgs& args) {
   const RecordingContents contents = ContentsOf(args.logs);
   const std::string missing = contents.Missing();
+  if (contents.channels.empty()) throw DemandNotMet(NamesOf(args.logs) + ": holds no message");
   if (args.is_quiet && missing.empty()) return;
   std::printf("recording  %s: %.1f s, %.1f MB\n",
               NamesOf(args.logs).c_str(),

@@ -6,7 +6,7 @@ import { pathToFileURL } from "node:url";
 import { SIZES, openBrowser } from "./browser.mjs";
 
 const SECTIONS = {
-  "report.html": ["coloured", "transform", "errors", "sets", "lidar", "scene", "diagnosis", "poses", "rejected", "made-from"],
+  "report.html": ["transform", "coloured", "errors", "sets", "lidar", "scene", "diagnosis", "poses", "rejected", "made-from"],
   "no_result.html": ["counts", "misses"],
 };
 const MAX_PICTURE_HEIGHT = 12_000;

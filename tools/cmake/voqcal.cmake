@@ -28,6 +28,8 @@ endif()
 
 # Everything that is installed, which is what tools/build makes; `all` has tests and benchmarks too.
 add_custom_target(programs)
+# The tests of units and modules (label unit), which run no program: all that the sanitizers watch.
+add_custom_target(unit_tests)
 
 # What most files include, parsed once: a third of the time to build. With it off, a file that forgets an
 # include does not compile.
@@ -75,8 +77,8 @@ function(voqcal_program name)
 endfunction()
 
 # voqcal_test(NAME SOURCES x_test.cpp LIBS x [LABELS system] [SHARDS n] [PROPERTIES p v ...]): one GoogleTest
-# executable. With LABELS each TEST is one ctest test, with these properties; else the executable is, in so many
-# shards (1 unless said): what a suite's tests share is made once, and hundreds of libraries are loaded once.
+# executable. With LABELS each TEST is one ctest test, with these properties; else the executable is (label unit), in
+# so many shards (1 unless said): what a suite's tests share is made once, and hundreds of libraries are loaded once.
 function(voqcal_test name)
   cmake_parse_arguments(arg "" "SHARDS" "SOURCES;LIBS;LABELS;PROPERTIES" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
@@ -93,6 +95,7 @@ function(voqcal_test name)
   if(NOT arg_SHARDS)
     set(arg_SHARDS 1)
   endif()
+  add_dependencies(unit_tests ${name})
   math(EXPR last "${arg_SHARDS} - 1")
   foreach(shard RANGE ${last})
     set(test ${name})
@@ -100,7 +103,7 @@ function(voqcal_test name)
       string(APPEND test .${shard})
     endif()
     add_test(NAME ${test} COMMAND ${name})
-    set_tests_properties(${test} PROPERTIES ${arg_PROPERTIES}
+    set_tests_properties(${test} PROPERTIES LABELS unit ${arg_PROPERTIES}
       ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}")
   endforeach()
 endfunction()

@@ -20,7 +20,7 @@ std::string ErrorLine(const LensEstimate& lens, LensError error, double reach_px
 
 }  // namespace
 
-std::string LensCorrectionYaml(const LensCorrection& correction) {
+std::string LensCorrectionYaml(const LensCorrection& correction, const std::string& which_to_take) {
   if (!correction.IsUsable()) {
     return "lens_correction: {status: none, reason: " + QuotedYaml(correction.problem) + "}\n";
   }
@@ -29,6 +29,9 @@ std::string LensCorrectionYaml(const LensCorrection& correction) {
       "# Not used for anything above or below: for who can correct the intrinsics too.\n"
       "lens_correction:  # what the samples say of the intrinsics that the rig file gives\n"
       "  status: estimated\n"
+      "  which_to_take: " +
+      QuotedYaml(which_to_take) +
+      "\n"
       "  errors:  # how far each moves a point that is half the image's width from the middle\n";
   for (Eigen::Index i = 0; i < kNumLensErrors; ++i) {
     text += ErrorLine(correction.errors, static_cast<LensError>(i), reach_px);

@@ -8,6 +8,8 @@ namespace voqcal {
 
 /// The section lens_correction of extrinsic.yaml, with a line break at its end. Its `camera` can
 /// stand in a rig file as it is.
-std::string LensCorrectionYaml(const LensCorrection& correction);
+///
+/// @param which_to_take  what WhichToTake() says.
+std::string LensCorrectionYaml(const LensCorrection& correction, const std::string& which_to_take);
 
 }  // namespace voqcal

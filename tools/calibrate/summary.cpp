@@ -92,14 +92,13 @@ std::string LensLines(const CalibrationResult& result) {
          Summary(lens.held_out) + "\n" +
          Format(
              "  focal length %+.2f %%, principal point %+.1f %+.1f px, radial %+.1f %+.1f px at "
-             "half the width; lens_correction\n"
-             "  in the result has this camera and the extrinsic that goes with it: the one above "
-             "goes with the rig file's\n",
+             "half the width\n  ",
              100 * lens.errors.errors[kFocalLength],
              px[kPrincipalPointX],
              px[kPrincipalPointY],
              px[kRadial2],
-             px[kRadial4]);
+             px[kRadial4]) +
+         WhichToTake(lens, result.T_camera_lidar, result.held_out) + "\n";
 }
 
 std::string SceneLines(const CalibrationResult& result) {

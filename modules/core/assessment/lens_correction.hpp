@@ -47,4 +47,11 @@ LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
                            const SceneScore& held_out_without,
                            const LikelihoodOptions& options);
 
+/// Which of the two extrinsics to take, for people; empty if there is no correction.
+///
+/// @param T_camera_lidar, held_out  the result with the intrinsics that were given, and its scores.
+std::string WhichToTake(const LensCorrection& correction,
+                        const Eigen::Isometry3d& T_camera_lidar,
+                        const SceneScore& held_out);
+
 }  // namespace voqcal

@@ -70,6 +70,21 @@ TEST(CorrectLens, LeavesTheRightLensAlone) {
   EXPECT_THAT(outcome.corrected.problem, HasSubstr("hardly better"));
 }
 
+TEST(WhichToTake, SaysHowFarTheTwoAreApart) {
+  LensCorrection correction;
+  EXPECT_EQ(WhichToTake(correction, test::TestExtrinsic(), {}), "");
+  correction.problem.clear();
+  Vector6d move;
+  move << 0.01, 0, 0, 0, 0.012, 0;
+  correction.T_camera_lidar = PerturbLeft(test::TestExtrinsic(), move);
+  correction.held_out.corner_mm.mean = 5.2;
+  SceneScore without;
+  without.corner_mm.mean = 7.0;
+  const std::string words = WhichToTake(correction, test::TestExtrinsic(), without);
+  EXPECT_THAT(words, HasSubstr("turned by 0.57 deg and shifted by 12 mm"));
+  EXPECT_THAT(words, HasSubstr("err by 5.2 mm, without by 7.0 mm"));
+}
+
 TEST(CorrectLens, SaysWhatItLacks) {
   auto samples = SamplesThrough(LensErrors::Zero());
   samples.front().camera.corners_px.clear();

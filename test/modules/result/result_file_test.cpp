@@ -129,6 +129,7 @@ TEST(ToYaml, GivesTheCorrectedCameraAsARigFileHasIt) {
   lens.held_out.corner_mm.mean = 5.25;
   const YAML::Node yaml = YAML::Load(ToYaml(result))["lens_correction"];
   EXPECT_EQ(yaml["status"].as<std::string>(), "estimated");
+  EXPECT_THAT(yaml["which_to_take"].as<std::string>(), HasSubstr("with the intrinsics of the rig"));
   EXPECT_DOUBLE_EQ(yaml["errors"]["principal_point_x_px"]["value"].as<double>(), 0.96);
   EXPECT_DOUBLE_EQ(yaml["errors"]["radial_2_px"]["standard_error"].as<double>(), 0.48);
   EXPECT_EQ(yaml["errors"]["radial_2_px"]["status"].as<std::string>(), "unobservable");

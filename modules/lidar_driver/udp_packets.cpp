@@ -13,6 +13,8 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include "rig/listening_address.hpp"
+
 namespace voqcal {
 namespace {
 
@@ -41,6 +43,7 @@ class UdpPackets : public PacketSource {
  public:
   UdpPackets(const std::string& address, int port)
       : name_(address + ":" + std::to_string(port)),
+        doubt_(AddressDoubt(address)),
         socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
     constexpr int kReceiveBuffer = 2097152;  // over a second of a VLP-16, if the kernel grants it
     Set(socket_.get(), SO_RCVBUF, kReceiveBuffer);
@@ -53,7 +56,9 @@ class UdpPackets : public PacketSource {
         inet_pton(AF_INET, address.c_str(), &local.sin_addr) == 1 &&
         bind(socket_.get(), reinterpret_cast<sockaddr*>(&local), sizeof(local)) == 0;
     if (!is_bound) {
-      throw std::runtime_error("cannot receive on UDP " + name_ + ": " + std::strerror(errno));
+      const std::string why = std::strerror(errno);
+      throw std::runtime_error("cannot receive on UDP " + name_ + ": " +
+                               (doubt_.empty() ? why : doubt_));
     }
   }
 
@@ -70,7 +75,8 @@ class UdpPackets : public PacketSource {
 
   std::string State() const override {
     const bool is_silent = Clock::now() - last_arrival_ > std::chrono::seconds(1);
-    return is_silent ? "waiting for packets on " + name_ : "running";
+    if (!is_silent) return "running";
+    return "waiting for packets on " + name_ + (doubt_.empty() ? "" : ": " + doubt_);
   }
 
  private:
@@ -107,6 +113,7 @@ class UdpPackets : public PacketSource {
   }
 
   std::string name_;
+  std::string doubt_;  ///< About its address.
   Descriptor socket_;
   std::array<std::uint8_t, 65536> bytes_{};
   Clock::time_point last_arrival_;

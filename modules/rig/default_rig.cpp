@@ -21,14 +21,24 @@ constexpr char kHead[] =
     "# Names end with units; _deg: degrees. Files and folders are relative to the rig file.\n"
     "# Several lidars and cameras: config/rigs/several_sensors.yaml.\n";
 
+Rig ReadExample(YamlDocument* document) {
+  Rig rig;
+  ReadRigSections({"", {}}, document, &rig);
+  document->ThrowIfWrong();
+  return rig;
+}
+
 }  // namespace
 
 std::vector<YamlDocument::KnownKey> DefaultRigKeys() {
   YamlDocument document("the default rig", kNeeded);
-  Rig rig;
-  ReadRigSections({"", {}}, &document, &rig);
-  document.ThrowIfWrong();
+  ReadExample(&document);
   return document.known_keys();
+}
+
+CameraModel ExampleCamera() {
+  YamlDocument document("the default rig", kNeeded);
+  return ReadExample(&document).camera;
 }
 
 std::string DefaultRigText() { return kHead + DocumentedYaml(DefaultRigKeys()); }

@@ -14,6 +14,7 @@
 
 #include "core/camera_detection/calibration_target.hpp"
 #include "core/format.hpp"
+#include "rig/default_rig.hpp"
 #include "rig/frame_folder.hpp"
 #include "rig/frame_pairing.hpp"
 
@@ -178,6 +179,21 @@ void DoubtTangential(const CameraModel& camera, Lines* lines) {
              kMax));
 }
 
+/// Nobody's lens has the example's numbers and no distortion.
+void DoubtExample(const CameraModel& camera, Lines* lines) {
+  const CameraModel example = ExampleCamera();
+  if (camera.width_px != example.width_px || camera.height_px != example.height_px ||
+      camera.fx_px != example.fx_px || camera.fy_px != example.fy_px ||
+      camera.cx_px != example.cx_px || camera.cy_px != example.cy_px ||
+      camera.distortion != example.distortion) {
+    return;
+  }
+  lines->push_back(
+      "camera: is the example that check_rig --print-defaults gives: give your camera's numbers, "
+      "or "
+      "leave fx_px and the rest out and have them found by calibrate_lens");
+}
+
 void DoubtGuess(const Rig& rig, Lines* lines) {
   constexpr double kMaxM = 10;
   if (!rig.T_camera_lidar_guess) return;
@@ -256,6 +272,7 @@ std::vector<std::string> CameraDoubts(const CameraModel& camera) {
   DoubtAspect(camera, &lines);
   DoubtPrincipalPoint(camera, &lines);
   DoubtTangential(camera, &lines);
+  DoubtExample(camera, &lines);
   if (lines.empty()) DoubtLens(camera, &lines);
   return lines;
 }

@@ -16,6 +16,7 @@
 #include "health/session_programs.hpp"
 #include "rig/default_rig.hpp"
 #include "rig/frame_pairing.hpp"
+#include "rig/listening_address.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_doubts.hpp"
 
@@ -70,6 +71,19 @@ void PrintShared(const std::string& name, const Rig& rig) {
               rig.board.square_m);
 }
 
+/// Where a lidar's packets are awaited. Not a doubt of the rig file: it may be another host's.
+void PrintAddress(const Rig& rig) {
+  const LidarSensorOptions& sensor = rig.lidar_sensor;
+  if (rig.lidar_driver.source != LidarDriverOptions::Source::kSensor || !sensor.pcap.empty())
+    return;
+  const std::string doubt = AddressDoubt(sensor.address);
+  std::printf("listens    %s:%d%s%s\n",
+              sensor.address.c_str(),
+              sensor.Port(),
+              doubt.empty() ? "" : ": ",
+              doubt.c_str());
+}
+
 void PrintRig(const Rig& rig) {
   PrintShared(rig.name, rig);
   std::printf("camera     %s\n", LensOf(rig.camera).c_str());
@@ -78,6 +92,7 @@ void PrintRig(const Rig& rig) {
   std::printf("drivers    lidar: %s, camera: %s\n",
               LidarSourceOf(rig).c_str(),
               CameraSourceOf(rig).c_str());
+  PrintAddress(rig);
 }
 
 /// A file's sensors, each once, and the names of its pairs.
@@ -90,6 +105,7 @@ void PrintPairs(const std::vector<Rig>& pairs) {
                 rig.lidar_name.c_str(),
                 rig.channels.lidar_points.c_str(),
                 LidarSourceOf(rig).c_str());
+    PrintAddress(rig);
   }
   for (const Rig& rig : pairs) {
     if (!told.insert(rig.camera_name).second) continue;

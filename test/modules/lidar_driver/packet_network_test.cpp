@@ -13,6 +13,7 @@
 #include "lidar_driver/lidar_driver_node.hpp"
 #include "messaging/convert_points.hpp"
 #include "modules/nodes/node_test.hpp"
+#include "rig/listening_address.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/vlp16_packet.hpp"
 
@@ -80,7 +81,8 @@ TEST_F(PacketNetworkTest, HearsTheNetworkAndSaysWhenItIsSilent) {
   rig_.lidar_sensor.port = FreePort();
   LidarDriverNode node(rig_, &bus_);
   EXPECT_EQ(node.State(),
-            "waiting for packets on 127.0.0.1:" + std::to_string(rig_.lidar_sensor.port));
+            "waiting for packets on 127.0.0.1:" + std::to_string(rig_.lidar_sensor.port) + ": " +
+                AddressDoubt("127.0.0.1"));
   const Sender sender(rig_.lidar_sensor.port);
   sender.Send({1, 2, 3});
   // A few at a time: a default receive buffer holds about 80. The fifth of the next turn shows
@@ -107,7 +109,7 @@ TEST_F(PacketNetworkTest, HearsTheNetworkAndSaysWhenItIsSilent) {
 TEST_F(PacketNetworkTest, NamesAnAddressThatIsNotOfThisHost) {
   rig_.lidar_sensor.address = "192.0.2.1";  // RFC 5737: of documentation, nobody's
   EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }),
-              HasSubstr("cannot receive on UDP 192.0.2.1:2368"));
+              HasSubstr("cannot receive on UDP 192.0.2.1:2368: no network card of this host"));
 }
 
 }  // namespace

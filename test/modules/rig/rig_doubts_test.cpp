@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rig/default_rig.hpp"
 #include "rig/frame_pairing.hpp"
+#include "rig/listening_address.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace voqcal {
@@ -92,6 +94,20 @@ TEST(CameraDoubts, AcceptsUsualCameras) {
   wide.fx_px = wide.fy_px = 685;
   wide.distortion = {-0.353, 0.149, -0.001, -0.0002, -0.0326};
   EXPECT_THAT(CameraDoubts(wide), IsEmpty());
+}
+
+TEST(CameraDoubts, NamesTheExampleThatNobodyChanged) {
+  CameraModel camera = ExampleCamera();
+  EXPECT_THAT(CameraDoubts(camera), ElementsAre(HasSubstr("is the example")));
+  camera.cx_px += 1;
+  EXPECT_THAT(CameraDoubts(camera), IsEmpty());
+}
+
+TEST(AddressDoubt, TellsTheLidarsAddressFromTheHosts) {
+  EXPECT_EQ(AddressDoubt("0.0.0.0"), "");
+  EXPECT_THAT(AddressDoubt("127.0.0.1"), HasSubstr("only what this host itself sends"));
+  // RFC 5737: of documentation, nobody's
+  EXPECT_THAT(AddressDoubt("192.0.2.1"), HasSubstr("not the lidar's"));
 }
 
 TEST(CameraDoubts, NamesAnotherLensModelsCoefficients) {

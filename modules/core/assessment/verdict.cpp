@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/assessment/judged_result.hpp"
+#include "core/camera/image_parts.hpp"
 #include "core/units.hpp"
 
 namespace voqcal {
@@ -26,7 +27,7 @@ constexpr Limits kSigmaMm{3.0, 5.0};       // 95 in 100 are within twice as much
 constexpr Limits kNormalDeg{0.7, 2.0};     // a clean simulated VLP-16 shows about 0.6
 constexpr Limits kTurnDeg{kDegPerRad * kMostCameraTurnRad, 2.0};
 constexpr int kFewestPoses = 6;
-constexpr Limits kNumCells{5, 2};  // of the 9 parts of the image
+constexpr Limits kNumImagePartsSeen{5, 2};  // of 9
 constexpr Limits kLeftOutShare{0.15, 0.4};
 
 Grade GradeOf(double value, const Limits& limits) {
@@ -132,6 +133,17 @@ void AddCertainty(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
             checks);
 }
 
+void AddParts(const std::vector<std::string>& empty, std::vector<VerdictCheck>* checks) {
+  const std::size_t num_seen = kNumImageParts - empty.size();
+  std::string none;
+  for (const std::string& part : empty) none += (none.empty() ? "; none: " : ", ") + part;
+  Add("Parts of the image",
+      GradeOf(static_cast<double>(num_seen), kNumImagePartsSeen),
+      std::to_string(num_seen) + " of the 9 parts of the image have a pose" + none + ".",
+      "Show the board there too: the result is extrapolated.",
+      checks);
+}
+
 void AddPoses(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   const int num_left_out = evidence.num_samples - evidence.num_used;
   Add("Number of poses",
@@ -141,11 +153,7 @@ void AddPoses(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
       std::to_string(evidence.num_used) + " poses were used. " + evidence.enough_words,
       "Take more: near and far, to all sides, tilted each way.",
       checks);
-  Add("Parts of the image",
-      GradeOf(evidence.num_cells, kNumCells),
-      std::to_string(evidence.num_cells) + " of the 9 parts of the image have a pose.",
-      "Show the board in the others: the result is extrapolated there.",
-      checks);
+  AddParts(evidence.empty_parts, checks);
   Add("Samples left out",
       GradeOf(static_cast<double>(num_left_out) / std::max(evidence.num_samples, 1), kLeftOutShare),
       std::to_string(num_left_out) + " of " + std::to_string(evidence.num_samples) +

@@ -20,7 +20,8 @@ struct Evidence {
   bool is_enough = false;  ///< Enough's, as the guide says it.
   std::string enough_words;
   int num_samples = 0;  ///< With those that were left out.
-  int num_cells = 0;    ///< Of the 9 parts of the image, how many have a used pose.
+  std::vector<std::string>
+      empty_parts;  ///< Of the image (ImagePartNames): those without a used pose.
   Agreement scene = Agreement::kCannotTell;
   std::string scene_reason;
   std::string likeliest_fault;  ///< A sentence; empty: none was found.

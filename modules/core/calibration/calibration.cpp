@@ -1,9 +1,21 @@
 #include "core/calibration/calibration.hpp"
 
+#include <algorithm>
+
+#include "core/camera/image_parts.hpp"
 #include "core/units.hpp"
 
 namespace voqcal {
 namespace {
+
+std::vector<std::string> PartsWithout(const std::vector<ScoreBin>& bins) {
+  std::vector<std::string> empty;
+  for (const std::string& part : ImagePartNames()) {
+    const auto is_it = [&](const ScoreBin& bin) { return bin.name == part; };
+    if (std::none_of(bins.begin(), bins.end(), is_it)) empty.push_back(part);
+  }
+  return empty;
+}
 
 Evidence EvidenceOf(const Calibration& calibration) {
   const Vector6d sigma = calibration.covariance.diagonal().cwiseSqrt();
@@ -19,7 +31,7 @@ Evidence EvidenceOf(const Calibration& calibration) {
   evidence.enough_words = calibration.enough.words;
   evidence.num_samples =
       static_cast<int>(calibration.used_ids.size() + calibration.rejected.size());
-  evidence.num_cells = static_cast<int>(calibration.held_out_by_cell.size());
+  evidence.empty_parts = PartsWithout(calibration.held_out_by_cell);
   evidence.scene = calibration.scene_check.verdict;
   evidence.scene_reason = calibration.scene_check.reason;
   for (const Finding& finding : calibration.diagnosis.findings) {

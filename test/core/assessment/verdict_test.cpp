@@ -6,6 +6,8 @@
 namespace voqcal {
 namespace {
 
+using ::testing::Contains;
+using ::testing::Field;
 using ::testing::HasSubstr;
 
 /// Of a session without anything to complain of.
@@ -20,7 +22,7 @@ Evidence GoodEvidence() {
   evidence.is_enough = true;
   evidence.enough_words = "Enough: 4.2 mm at worst, at 5 m; 5 mm are asked.";
   evidence.num_samples = 31;
-  evidence.num_cells = 7;
+  evidence.empty_parts = {"bottom left", "bottom right"};
   evidence.scene = Agreement::kAgrees;
   evidence.scene_reason = "the edges fit best 0.05 deg from it";
   return evidence;
@@ -94,12 +96,15 @@ TEST(VerdictOf, WantsMoreOfPosesAndParts) {
   EXPECT_EQ(with_poses(8, true), Grade::kGood);
   EXPECT_EQ(with_poses(30, false), Grade::kLook);
   EXPECT_EQ(with_poses(5, false), Grade::kBad);
-  const auto with_cells = [](int num) {
-    return JudgeWith([num](Evidence* e) { e->num_cells = num; }).grade;
+  EXPECT_THAT(
+      VerdictOf(GoodEvidence()).checks,
+      Contains(Field(&VerdictCheck::text, HasSubstr("; none: bottom left, bottom right."))));
+  const auto without_parts = [](std::size_t num) {
+    return JudgeWith([num](Evidence* e) { e->empty_parts.assign(num, "top"); }).grade;
   };
-  EXPECT_EQ(with_cells(5), Grade::kGood);
-  EXPECT_EQ(with_cells(4), Grade::kLook);
-  EXPECT_EQ(with_cells(1), Grade::kBad);
+  EXPECT_EQ(without_parts(4), Grade::kGood);
+  EXPECT_EQ(without_parts(5), Grade::kLook);
+  EXPECT_EQ(without_parts(8), Grade::kBad);
 }
 
 TEST(VerdictOf, DoesNotCallTheUnknownGood) {

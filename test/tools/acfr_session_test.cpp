@@ -17,7 +17,9 @@
 namespace voqcal {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 std::string CloudOf(int num_points) {
   const std::string num = std::to_string(num_points);
@@ -56,6 +58,31 @@ class SmallDisk {
  private:
   rlimit before_{};
 };
+
+TEST(ImportAcfrSession, DoubtsImagesOfAnotherSizeAndFramesThatAreToRest) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "pcd");
+  std::filesystem::create_directories(folder.path() / "images");
+  folder.Write("pcd/pose1_full.pcd", CloudOf(3));
+  const auto jpeg = EncodeJpeg(cv::Mat(48, 64, CV_8UC1, cv::Scalar(128)), 90);
+  folder.Write("images/pose1.jpg", {jpeg.begin(), jpeg.end()});
+  Rig rig;
+  rig.camera.width_px = 1280;
+  rig.camera.height_px = 800;
+  const auto import = [&] {
+    return ImportAcfrSession(folder.path(), rig, AcfrImportOptions{}, folder.path() / "out.lcm")
+        .doubts;
+  };
+  EXPECT_THAT(
+      import(),
+      ElementsAre(
+          HasSubstr("images that are not of the camera's size: 1 (the first is of 64 x 48 px"),
+          HasSubstr("num_still_frames is 3")));
+  rig.camera.width_px = 64;
+  rig.camera.height_px = 48;
+  rig.sample_collector.num_still_frames = 1;
+  EXPECT_THAT(import(), IsEmpty());
+}
 
 // A full disk is no fault of the cloud that did not fit.
 TEST(ImportAcfrSession, EndsWhereTheLogCannotBeWritten) {

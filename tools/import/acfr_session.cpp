@@ -128,11 +128,49 @@ class Pieces {
   std::size_t num_left_out_ = 0;
 };
 
+/// How many images are not of the camera's size, and what the first one's is.
+class OtherSizes {
+ public:
+  explicit OtherSizes(const CameraModel& camera) : camera_(camera) {}
+
+  void See(const image_t& image) {
+    if (image.width == camera_.width_px && image.height == camera_.height_px) return;
+    if (num_++ == 0) first_ = SizeText(image.width, image.height);
+  }
+
+  /// Empty if all are of its size.
+  std::string Doubt() const {
+    if (num_ == 0) return "";
+    return "images that are not of the camera's size: " + std::to_string(num_) +
+           " (the first is of " + first_ + " px, camera.width_px x height_px are " +
+           SizeText(camera_.width_px, camera_.height_px) +
+           "): no board is looked for in them. Give the size and the intrinsics of these images";
+  }
+
+ private:
+  static std::string SizeText(int width_px, int height_px) {
+    return std::to_string(width_px) + " x " + std::to_string(height_px);
+  }
+
+  const CameraModel& camera_;
+  std::size_t num_ = 0;
+  std::string first_;
+};
+
+/// Where the board rests: such a session has one frame of each place.
+std::string StillnessDoubt(const Rig& rig) {
+  const int num_still_frames = rig.sample_collector.num_still_frames;
+  if (num_still_frames <= 1) return "";
+  return "sample_collector.num_still_frames is " + std::to_string(num_still_frames) +
+         ": where each place has one cloud and one image let it be 1, or none becomes a sample";
+}
+
 ImportedFrames WriteFrames(Session session, const Rig& rig, const std::filesystem::path& log) {
   Progress progress("importing " + session.name);
   EventWriter events(log);
   Pieces clouds("clouds");
   Pieces images("images");
+  OtherSizes other_sizes(rig.camera);
   auto cloud = session.clouds.Next();
   auto image = session.images.Next();
   while (cloud || image) {
@@ -148,6 +186,7 @@ ImportedFrames WriteFrames(Session session, const Rig& rig, const std::filesyste
       const auto seq_of_info = static_cast<std::int64_t>(images.num_taken());
       images.Take([&](std::int64_t seq) { return ImageMessage(*image, seq); },
                   [&](const image_t& message) {
+                    other_sizes.See(message);
                     events.Write(rig.channels.camera_info,
                                  ToMessage(rig.camera, image->utime, seq_of_info));
                     events.Write(rig.channels.camera_image, message);
@@ -159,7 +198,14 @@ ImportedFrames WriteFrames(Session session, const Rig& rig, const std::filesyste
                   std::to_string(images.num()) + " images");
   }
   events.Flush();
-  return {clouds.num_taken(), images.num_taken(), clouds.Words() + " and " + images.Words(), {}};
+  ImportedFrames frames;
+  frames.num_clouds = clouds.num_taken();
+  frames.num_images = images.num_taken();
+  frames.text = clouds.Words() + " and " + images.Words();
+  for (const std::string& doubt : {other_sizes.Doubt(), StillnessDoubt(rig)}) {
+    if (!doubt.empty()) frames.doubts.push_back(doubt);
+  }
+  return frames;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "rig/rig.hpp"
 
@@ -16,8 +17,9 @@ struct AcfrImportOptions {
 struct ImportedFrames {
   std::size_t num_clouds = 0;
   std::size_t num_images = 0;
-  std::string text;     ///< "18 clouds (1 left out) and 18 images".
-  std::string pairing;  ///< By what clouds and images were paired, for people.
+  std::string text;                 ///< "18 clouds (1 left out) and 18 images".
+  std::string pairing;              ///< By what clouds and images were paired, for people.
+  std::vector<std::string> doubts;  ///< Why hardly a sample will come of it, and what to do.
 };
 
 /// @throws std::runtime_error naming the folder of a session that is missing or empty.

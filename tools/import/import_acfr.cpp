@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <spdlog/spdlog.h>
 #include <system_error>
 
 #include "common/output_file.hpp"
@@ -36,6 +37,9 @@ void Import(const ImportArgs& args) {
   std::filesystem::rename(log, args.out.path, error);
   if (error)
     throw std::runtime_error(args.out.path.string() + ": cannot write: " + error.message());
+  for (const std::string& doubt : frames.doubts) {
+    spdlog::warn("{}: {}", args.rig.string(), doubt);
+  }
   std::cout << frames.text << '\n'
             << frames.pairing << "\nwritten\n  " << args.out.path.string() << '\n';
 }

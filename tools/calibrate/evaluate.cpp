@@ -90,8 +90,8 @@ void Evaluate(const EvaluateArgs& args) {
   const auto run = CollectSamples(rig, args.input, scratch.path());
   run->Finish(/*is_collecting_only=*/true);
   if (run->samples().empty()) {
-    throw std::runtime_error(args.input.Given().string() + ": no sample to score (" +
-                             CountsOf(*run) + ")" + FailureAdvice(*run));
+    throw std::runtime_error(args.input.Given().string() + ": no sample to score" +
+                             FailureAdvice(*run) + "\nframes: " + CountsOf(*run));
   }
   const Consistency consistency = FindConsistent(run->samples(), rig.consistency);
   const std::vector<BoardSample> consistent = ConsistentSamples(run->samples(), consistency);

@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "calibrate/advice.hpp"
 #include "calibrate/detected_boards.hpp"
 #include "calibrate/finish_session.hpp"
 #include "calibrate/offline_run.hpp"
@@ -125,6 +126,16 @@ std::size_t MostAtOnce() {
       std::max(1.0, (AvailableBytes() - bytes_of_scenes) / kBytesOfPair));
 }
 
+/// Of lines that each begin with a line break.
+std::string InOneLine(const std::string& text) {
+  std::istringstream lines(text);
+  std::string joined;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.empty()) joined += (joined.empty() ? "" : "; ") + line;
+  }
+  return joined;
+}
+
 PairSession Calibrate(const Rig& rig,
                       const RigRecording& recording,
                       bool use_log_times,
@@ -146,6 +157,8 @@ PairSession Calibrate(const Rig& rig,
   PairSession session = SessionOf(rig);
   session.use_log_times = use_log_times;
   TakeResult(run.samples(), run.assessor().result(), run.assessor().problem(), &session);
+  const std::string advice = FailureAdvice(run);
+  if (!run.assessor().result() && !advice.empty()) session.pair.problem = InOneLine(advice);
   return session;
 }
 

@@ -81,10 +81,7 @@ std::string PiecesProblem(const std::vector<std::string>& sensors, const PairGra
     }
     pieces.push_back(Listed(names, ", "));
   }
-  return Format(
-      "no pair joins these parts of the rig: %s; hold the board where a lidar and a "
-      "camera of different parts both see it, until every part is joined",
-      Listed(pieces, " | ").c_str());
+  return "no pair joins these parts of the rig: " + Listed(pieces, " | ");
 }
 
 // Each pair in a loop against all the others.

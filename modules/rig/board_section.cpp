@@ -22,6 +22,15 @@ constexpr char kOffsetMeaning[] =
     "alike; hold the board this way up in every pose. calibrate says so if a sign must be the "
     "other one.";
 
+/// "tagCols (tags along the width), ...".
+std::string KeysOf(const std::string& pattern) {
+  std::string text;
+  for (const TargetKey& key : FindCalibrationTarget(pattern)->keys) {
+    text += (text.empty() ? "" : ", ") + std::string(key.name) + " (" + key.meaning + ")";
+  }
+  return text;
+}
+
 void ReadTargetKey(const TargetKey& key, OptionSection* section, BoardSpec* board) {
   const auto read = [&](auto field) {
     if (key.is_required) return section->ReadRequired(key.name, &(board->*field), key.meaning);
@@ -47,8 +56,9 @@ void ReadBoard(OptionSection* top, BoardSpec* board) {
   section.Read(pattern,
                &board->pattern,
                "what is printed on it: " + CalibrationTargetNames() +
-                   " (as OpenCV 4.6 prints it, y up; an AprilGrid by the lines of Kalibr's own "
-                   "file: modules/camera_board_detector/README.md)");
+                   " (as OpenCV 4.6 prints it, y up). An AprilGrid has, instead of the keys "
+                   "below, those of Kalibr's own file: " +
+                   KeysOf("aprilgrid"));
   const CalibrationTarget* target = FindCalibrationTarget(board->pattern);
   if (target == nullptr) {
     return section.AddError(pattern, "must be one of " + CalibrationTargetNames());

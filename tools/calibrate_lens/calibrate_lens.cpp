@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <spdlog/spdlog.h>
+
 #include "calibrate/bag.hpp"
 #include "calibrate_lens/lens_summary.hpp"
 #include "calibrate_lens/rig_with_camera.hpp"
@@ -22,6 +24,7 @@
 #include "import/recorded_images.hpp"
 #include "result/camera_yaml.hpp"
 #include "rig/rig.hpp"
+#include "rig/rig_doubts.hpp"
 
 namespace voqcal {
 namespace {
@@ -147,6 +150,7 @@ class Recording {
 void CalibrateLensOf(const LensArgs& args) {
   LensInRig lens;
   const Rig rig = LoadRig(args.rig, &lens);
+  for (const std::string& doubt : BoardDoubts(rig.board)) spdlog::warn("{}", doubt);
   if (!args.written.path.empty()) {
     RequireSamePaths(PlaceOfRig(args.rig).file, args.written.path);
     args.written.Prepare();

@@ -134,6 +134,8 @@ function matches(names, topics) {
 function unclear(recording, kind, sensors, free, types) {
   const names = sensors.map(({ name }) => name);
   const flags = names.map((name) => `--topic ${name}=NAME`).join(" ");
-  const there = free.length > 0 ? free.join(", ") : `none of type ${types.join(" or ")}, but ${topicsThere(recording)}`;
+  const taken = topicsOfTypes(recording, types).filter((topic) => !free.includes(topic));
+  const others = taken.length > 0 ? `none left: ${taken.join(", ")} is another sensor's already` : `none of type ${types.join(" or ")}, but ${topicsThere(recording)}`;
+  const there = free.length > 0 ? free.join(", ") : others;
   return `which topics are those of the ${KIND_WORDS[kind]} ${names.join(", ")} is not clear (${flags} says it); there are ${there}`;
 }

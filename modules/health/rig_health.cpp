@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/format.hpp"
+#include "core/starts_with.hpp"
 
 namespace voqcal {
 namespace {
@@ -23,10 +24,6 @@ constexpr double kRecordingSilenceS = 2.0;
 constexpr std::int64_t kMinFreeBytes = 200 << 20;
 // Heartbeats alone are one a second.
 constexpr double kSendsHz = 2.5;
-
-bool StartsWith(const std::string& text, const std::string& prefix) {
-  return text.compare(0, prefix.size(), prefix) == 0;
-}
 
 /// "for 4 s".
 std::string For(double seconds) { return Format("for %.0f s", seconds); }

@@ -5,14 +5,11 @@
 #include <sstream>
 
 #include "core/sensor_network/sensor_pair.hpp"
+#include "core/starts_with.hpp"
 #include "rig/rig.hpp"
 
 namespace voqcal {
 namespace {
-
-bool StartsWith(const std::string& text, const std::string& prefix) {
-  return text.compare(0, prefix.size(), prefix) == 0;
-}
 
 SessionProgram OfSensor(const std::string& module, const std::string& sensor) {
   return {module + "_" + sensor, module, sensor, ""};

@@ -14,6 +14,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "core/starts_with.hpp"
 #include "rig/lcm_url.hpp"
 
 namespace voqcal {
@@ -26,10 +27,6 @@ constexpr int kNumState = 30;
 
 /// LCM_MAX_CHANNEL_NAME_LENGTH, which lcm.h does not export.
 constexpr std::size_t kMaxChannelLength = 63;
-
-bool StartsWith(const std::string& text, const std::string& prefix) {
-  return text.compare(0, prefix.size(), prefix) == 0;
-}
 
 /// The value of recv_buf_size in a URL, 0 if it has none (the kernel's default then holds).
 std::int64_t RecvBufSize(const std::string& url) {

@@ -4,6 +4,7 @@
 
 #include "core/units.hpp"
 #include "files/number_text.hpp"
+#include "files/transform_yaml.hpp"
 
 namespace voqcal {
 namespace {
@@ -11,13 +12,6 @@ namespace {
 std::string SpreadLine(const std::string& name, const Spread& spread) {
   return "    " + name + ": {mean: " + NumberText(spread.mean) +
          ", std: " + NumberText(spread.std) + ", max: " + NumberText(spread.max) + "}\n";
-}
-
-template <typename Vector>
-std::string List(const Vector& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + NumberText(value);
-  return "[" + text + "]";
 }
 
 std::string Number(const std::string& key, double value) {
@@ -98,7 +92,8 @@ std::string SceneCheckYaml(const SceneCheck& check) {
       "}\n  # what the edges ask for, along and about the camera's axes\n" + SceneAxisYaml(check) +
       "  perturbed:  # delta: rotation_rad, then translation_m, left (camera) side\n";
   for (const SceneProbe& probe : check.probes) {
-    text += "    - {delta: " + List(probe.delta) + ", score: " + NumberText(probe.score) + "}\n";
+    text +=
+        "    - {delta: " + ListYaml(probe.delta) + ", score: " + NumberText(probe.score) + "}\n";
   }
   return text;
 }

@@ -7,6 +7,7 @@
 #include "core/camera_detection/camera_board_fault.hpp"
 #include "core/format.hpp"
 #include "core/lidar_detection/lidar_board_miss.hpp"
+#include "core/starts_with.hpp"
 
 namespace voqcal {
 namespace {
@@ -70,17 +71,13 @@ const char* TextOn(LidarBoardMiss miss) {
   return "";
 }
 
-bool BeginsWith(const std::string& text, const std::string& beginning) {
-  return text.compare(0, beginning.size(), beginning) == 0;
-}
-
 /// A detail may stand behind the reason: "joined to something below".
 /// @tparam Fault  kAmbiguous is its last.
 template <typename Fault>
 std::string AdviceOnCounted(const std::string& reason) {
   for (int i = 0; i <= static_cast<int>(Fault::kAmbiguous); ++i) {
     const auto fault = static_cast<Fault>(i);
-    if (reason == ToString(fault) || BeginsWith(reason, std::string(ToString(fault)) + " ")) {
+    if (reason == ToString(fault) || StartsWith(reason, std::string(ToString(fault)) + " ")) {
       return TextOn(fault);
     }
   }
@@ -88,7 +85,7 @@ std::string AdviceOnCounted(const std::string& reason) {
 }
 
 // "boards: blurred" warns of boards that were found.
-bool IsOfAFrame(const std::string& what) { return !BeginsWith(what, "boards: "); }
+bool IsOfAFrame(const std::string& what) { return !StartsWith(what, "boards: "); }
 
 /// Reasons of one module that have one advice.
 struct Failures {
@@ -115,7 +112,7 @@ std::vector<Failures> FailuresOf(const Module& module) {
 
 std::string AdviceOn(const std::string& module, const std::string& reason) {
   if (module == "camera_board_detector") {
-    if (BeginsWith(reason, "image of ")) return "check camera.width_px and height_px";
+    if (StartsWith(reason, "image of ")) return "check camera.width_px and height_px";
     return AdviceOnCounted<CameraBoardFault>(reason);
   }
   if (module == "lidar_board_detector") return AdviceOnCounted<LidarBoardMiss>(reason);
@@ -136,7 +133,7 @@ std::string FailureAdvice(const OfflineRun& run) {
   std::string lines;
   const std::string trouble = "trouble: ";
   for (const Module* module : run.modules()) {
-    if (BeginsWith(module->State(), trouble)) {
+    if (StartsWith(module->State(), trouble)) {
       return "\n" + module->Name() + ": " + module->State().substr(trouble.size());
     }
     std::int64_t num_all = 0;

@@ -164,7 +164,8 @@ void RequireOnePiece(const CalibrateRigArgs& args, const RigExtrinsics& result) 
     if (!pair.problem.empty()) text += "\n" + pair.Name() + ": " + pair.problem;
   }
   text +=
-      "\nMend what keeps a pair's sensors from seeing the board; if nothing does, hold the board where "
+      "\nMend what keeps a pair's sensors from seeing the board; if nothing does, hold the board "
+      "where "
       "a lidar and a camera of different parts both see it, until every part is joined";
   const std::filesystem::path earlier = args.out / kRigResultName;
   if (std::filesystem::exists(earlier)) text += "\n" + earlier.string() + " is of an earlier run";

@@ -12,7 +12,6 @@
 namespace voqcal {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 const cv::Scalar kGreen(80, 220, 60);
 const cv::Scalar kMagenta(220, 40, 240);
 
@@ -30,8 +29,8 @@ Direction DirectionOf(const Eigen::Vector3d& point_m) {
 /// Which directions a picture shows, and how large.
 struct Window {
   Direction centre;
-  double width_rad = 2 * kPi;
-  double height_rad = kPi;
+  double width_rad = 2 * M_PI;
+  double height_rad = M_PI;
   double px_per_rad_across = 1.0;
   double px_per_rad_up = 1.0;
 
@@ -40,7 +39,7 @@ struct Window {
             std::max(1, static_cast<int>(std::lround(height_rad * px_per_rad_up)))};
   }
   cv::Point2d ToPx(const Direction& at) const {
-    const double left = std::remainder(at.azimuth - centre.azimuth, 2 * kPi);
+    const double left = std::remainder(at.azimuth - centre.azimuth, 2 * M_PI);
     const double up = at.elevation - centre.elevation;
     return {(width_rad / 2 - left) * px_per_rad_across, (height_rad / 2 - up) * px_per_rad_up};
   }
@@ -98,7 +97,7 @@ Window NearWindow(const BoardPose& board_lidar) {
   double half_rad = 0.01;
   for (const Eigen::Vector3d& corner_m : board_lidar.corners_m) {
     const Direction at = DirectionOf(corner_m);
-    const double left = std::remainder(at.azimuth - window.centre.azimuth, 2 * kPi);
+    const double left = std::remainder(at.azimuth - window.centre.azimuth, 2 * M_PI);
     half_rad =
         std::max({half_rad, std::abs(left), std::abs(at.elevation - window.centre.elevation)});
   }

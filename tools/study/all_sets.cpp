@@ -11,8 +11,6 @@
 namespace voqcal {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 using Three = std::array<const BoardSample*, 3>;
 
 double Volume(const Three& set) {
@@ -73,7 +71,7 @@ SceneCentres::SceneCentres(const std::vector<BoardSample>& samples, const Camera
 
 double SceneCentres::ErrorPx(std::size_t sample, const Eigen::Isometry3d& T_camera_lidar) const {
   const Eigen::Vector3d centre_camera_m = T_camera_lidar * centres_[sample].lidar_m;
-  if (!camera_.IsInFront(centre_camera_m)) return kNaN;
+  if (!camera_.IsInFront(centre_camera_m)) return std::numeric_limits<double>::quiet_NaN();
   return (camera_.Project(centre_camera_m) - centres_[sample].px).norm();
 }
 

@@ -58,10 +58,9 @@ class ElevationLines {
 
  private:
   static constexpr std::size_t kNumBins = 9000;  // 0.02 degrees each
-  static constexpr double kPi = 3.14159265358979323846;
 
   static std::size_t BinOf(double elevation_rad) {
-    const double share = elevation_rad / kPi + 0.5;
+    const double share = elevation_rad / M_PI + 0.5;
     return std::min(static_cast<std::size_t>(share * kNumBins), kNumBins - 1);
   }
 

@@ -43,10 +43,9 @@ OutlineModel ModelOf(const BoardSpec& board, const LidarBoardOptions& options, d
 /// does.
 RectanglePose Upright(const PlaneFrame& frame, RectanglePose pose) {
   constexpr double kLevel = 0.02;  // of the axis' height: about one degree
-  constexpr double kPi = 3.14159265358979323846;
   const Eigen::Matrix3d R = TransformOf(frame, pose).linear();
   const double up = std::abs(R(2, 1)) > kLevel ? R(2, 1) : R(2, 0);
-  if (up < 0) pose.angle_rad += kPi;
+  if (up < 0) pose.angle_rad += M_PI;
   return pose;
 }
 

@@ -14,7 +14,6 @@
 namespace voqcal {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kExpectedM = 0.25;  // of the centre and, by a turn, of the corners: 1 sigma
 
 /// Metres for each unit of [x; y; angle]: a turn moves the corners by half the diagonal.
@@ -128,7 +127,7 @@ bool HasTurnedRival(const std::vector<OutlineBeam>& beams,
   constexpr double kSinFiveDegrees = 0.0872;
   constexpr double kAsGood = 5.0;  // ln 150
   for (int i = 1; i < kNumAngles; ++i) {
-    const RectanglePose turned{best.pose.centre_m, best.pose.angle_rad + kPi * i / kNumAngles};
+    const RectanglePose turned{best.pose.centre_m, best.pose.angle_rad + M_PI * i / kNumAngles};
     const OutlineFit rough = SharpenOutline(beams, model, turned, SearchBlurM(model) / 2);
     const OutlineFit rival = RefineOutline(beams, model, rough.pose);
     const bool is_turned =

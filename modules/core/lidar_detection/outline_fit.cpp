@@ -14,8 +14,6 @@
 namespace voqcal {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 OutlineFit Moved(const OutlineFit& from, const Vector5d& step) {
   OutlineFit to = from;
   to.pose.centre_m += Eigen::Rotation2Dd(from.pose.angle_rad) * step.head<2>();
@@ -110,7 +108,7 @@ std::vector<double> PromisingAngles(const std::vector<OutlineBeam>& beams,
                                     const Eigen::Vector2d& centre_m) {
   constexpr std::size_t kNumAngles = 12;  // 15 degrees apart: within reach of the wide blur
   std::array<double, kNumAngles> scores_m{};
-  const auto angle_at = [](std::size_t i) { return kPi * static_cast<double>(i) / kNumAngles; };
+  const auto angle_at = [](std::size_t i) { return M_PI * static_cast<double>(i) / kNumAngles; };
   for (std::size_t i = 0; i < kNumAngles; ++i) {
     scores_m[i] = RoughScore(beams, model, {centre_m, angle_at(i)}, model.blur_m);
   }

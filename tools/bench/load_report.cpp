@@ -95,8 +95,14 @@ void LoadReport::ReadMemoryIfDue() {
   }
 }
 
+std::int64_t LoadReport::NumUnanswered() const {
+  std::int64_t num = 0;
+  for (const auto& [name, sensor] : sensors_) num += sensor.NumUnanswered();
+  return num;
+}
+
 std::int64_t LoadReport::NumLost() const {
-  std::int64_t num_lost = lidar.NumUnanswered() + camera.NumUnanswered();
+  std::int64_t num_lost = NumUnanswered();
   for (const auto& [module, status] : statuses_) {
     for (const channel_status_t& channel : status.channels) {
       num_lost += channel.num_lost + channel.num_malformed;
@@ -106,7 +112,8 @@ std::int64_t LoadReport::NumLost() const {
 }
 
 std::string LoadReport::Text() const {
-  std::string text = "lidar   " + lidar.Text() + "camera  " + camera.Text();
+  std::string text;
+  for (const auto& [name, sensor] : sensors_) text += Format("%-7s ", name.c_str()) + sensor.Text();
   for (const auto& [module, status] : statuses_) {
     for (const channel_status_t& channel : status.channels) {
       if (channel.num_lost + channel.num_malformed == 0) continue;
@@ -118,7 +125,9 @@ std::string LoadReport::Text() const {
   }
   const double elapsed_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  double cores = 0.0;
   for (const Watched& each : watched_) {
+    cores += each.cpu_s / elapsed_s;
     if (each.memory_mb.empty()) continue;
     // The first half fills buffers.
     const std::vector<double> second_half(
@@ -130,7 +139,7 @@ std::string LoadReport::Text() const {
                    SlopePerMinute(second_half),
                    100 * each.cpu_s / elapsed_s);
   }
-  return text;
+  return text + Format("modules together: %.2f cores\n", cores);
 }
 
 }  // namespace voqcal

@@ -36,6 +36,7 @@ struct Session {
   SimulationOptions options;
   SpoiltWorld spoilt;
   CameraModel camera;  ///< That the rig file has.
+  BoardSpec board;     ///< The same.
 };
 
 struct WrongModel {
@@ -99,9 +100,23 @@ void MoveBetween(Session* session) {
   };
 }
 
+// What was measured beforehand is off by what the intervals hold of it, drawn anew for each session.
+void MistakeWhatIsAdmitted(Session* session) {
+  const LikelihoodOptions& options = session->rig.extrinsic_refiner.likelihood;
+  const KeyedNoise noise(session->options.seed, NoiseUse::kHolds, -1);
+  const auto [focal, square] = noise.Normals(0);
+  const auto [x, y] = noise.Normals(1);
+  session->camera.fx_px *= 1 + options.focal_length_error * focal;
+  session->camera.fy_px *= 1 + options.focal_length_error * focal;
+  session->camera.cx_px += options.principal_point_error_px * x;
+  session->camera.cy_px += options.principal_point_error_px * y;
+  session->board.square_m *= 1 + options.board_size_error * square;
+}
+
 const std::vector<WrongModel>& WrongModels() {
   static const std::vector<WrongModel> models = {
       {"none", "as the estimators take it", [](Session*) {}},
+      {"admitted", "intrinsics and squares by what the intervals hold", MistakeWhatIsAdmitted},
       {"blur",
        "edges of the board twice as blurred",
        [](Session* session) {
@@ -161,13 +176,14 @@ void PrintWrongModels(const WrongModelsArgs& args) {
     for (int run = 0; run < args.num_runs; ++run) {
       SimulationOptions options =
           FaultySimulation(rig, args.num_poses, args.seed + static_cast<std::uint32_t>(run));
-      Session session{rig, options, {}, rig.camera};
+      Session session{rig, options, {}, rig.camera, rig.board};
       model.spoil(&session);
       GivenSession given{
-          rig.board, session.camera, SimulateProjected(rig, session.options, session.spoilt)};
+          session.board, session.camera, SimulateProjected(rig, session.options, session.spoilt)};
       SeeBoardsAgain(&given);
       CalibrationTask task = rig.Task();
       task.camera = session.camera;
+      task.board = session.board;
       const CalibrationOutcome outcome = Calibrate(given.samples, {}, task);
       if (!outcome.problem.empty()) {
         std::printf("%s, seed %u: %s\n", model.name, options.seed, outcome.problem.c_str());

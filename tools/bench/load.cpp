@@ -171,10 +171,9 @@ void Run(const LoadArgs& args) {
   const std::vector<Sender> senders = SendersOf(pairs, args.rate_share);
   LoadReport report(args.watched);
   Bus bus(lcm_url);
-  bus.Subscribe<module_status_t>(
-      pairs.front().channels.module_status, Queue::kEvery, [&](const module_status_t& message) {
-        report.Take(message);
-      });
+  bus.Subscribe<module_status_t>(pairs.front().channels.module_status,
+                                 Queue::kEvery,
+                                 [&](const module_status_t& message) { report.Take(message); });
   std::atomic<bool> is_done{false};
   std::vector<std::thread> threads;
   for (const Sender& sender : senders) {

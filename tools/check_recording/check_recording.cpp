@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "check_recording/recording_contents.hpp"
+#include "common/progress.hpp"
 #include "common/tool_main.hpp"
 #include "core/format.hpp"
 
@@ -24,6 +25,13 @@ std::string NamesOf(const std::vector<std::filesystem::path>& logs) {
     names += (names.empty() ? "" : ", ") + log.string();
   }
   return names;
+}
+
+RecordingContents Read(const std::vector<std::filesystem::path>& logs) {
+  Progress progress("reading " + NamesOf(logs));
+  return ContentsOf(logs, [&progress](const std::filesystem::path& log, double share) {
+    progress.Show(share, log.filename().string());
+  });
 }
 
 void PrintChannels(const RecordingContents& contents) {
@@ -49,7 +57,7 @@ void PrintChannels(const RecordingContents& contents) {
 }
 
 void CheckRecording(const CheckRecordingArgs& args) {
-  const RecordingContents contents = ContentsOf(args.logs);
+  const RecordingContents contents = Read(args.logs);
   const std::string missing = contents.Missing();
   if (contents.channels.empty()) throw DemandNotMet(NamesOf(args.logs) + ": holds no message");
   if (args.is_quiet && missing.empty()) return;

@@ -114,13 +114,20 @@ std::string RecordingContents::Unknown() const {
   return text;
 }
 
-RecordingContents ContentsOf(const std::vector<std::filesystem::path>& logs) {
+RecordingContents ContentsOf(
+    const std::vector<std::filesystem::path>& logs,
+    const std::function<void(const std::filesystem::path& log, double share)>& on_progress) {
   RecordingContents contents;
   for (const std::filesystem::path& log : logs) {
     LogReader reader(log);
     contents.num_bytes += reader.num_bytes();
     try {
-      while (const std::optional<LogEvent> event = reader.Next()) contents.Take(*event);
+      while (const std::optional<LogEvent> event = reader.Next()) {
+        contents.Take(*event);
+        if (!on_progress) continue;
+        on_progress(log,
+                    static_cast<double>(reader.offset()) / static_cast<double>(reader.num_bytes()));
+      }
     } catch (const TruncatedLogError& error) {
       contents.num_cut_bytes += reader.num_bytes() - error.offset();
     }

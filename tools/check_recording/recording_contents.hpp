@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -49,8 +50,13 @@ struct RecordingContents {
   std::string Unknown() const;
 };
 
-/// @param logs  one recording, in its order: a recorder that was started again begins another file.
+/// @param logs         one recording, in its order: a recorder that was started again begins
+/// another
+///     file.
+/// @param on_progress  hears how much of the log at work is read, 0 to 1.
 /// @throws std::runtime_error naming the log, if it cannot be read or is no LCM log.
-RecordingContents ContentsOf(const std::vector<std::filesystem::path>& logs);
+RecordingContents ContentsOf(
+    const std::vector<std::filesystem::path>& logs,
+    const std::function<void(const std::filesystem::path& log, double share)>& on_progress = {});
 
 }  // namespace voqcal

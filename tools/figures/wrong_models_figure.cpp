@@ -100,7 +100,8 @@ void MoveBetween(Session* session) {
   };
 }
 
-// What was measured beforehand is off by what the intervals hold of it, drawn anew for each session.
+// What was measured beforehand is off by what the intervals hold of it, drawn anew for each
+// session.
 void MistakeWhatIsAdmitted(Session* session) {
   const LikelihoodOptions& options = session->rig.extrinsic_refiner.likelihood;
   const KeyedNoise noise(session->options.seed, NoiseUse::kHolds, -1);

@@ -109,7 +109,7 @@ test("a topic that is given to another sensor is not taken a second time for its
   const { C_left, IMAGE_right } = imported("given.mcap", sensors);
   assert.deepEqual([C_left[0].data[0], IMAGE_right[0].data[0]], [10, 20]);
   await record("given.mcap", { cameras: { IMAGE_right: 10 } });
-  assert.match(run("given.mcap", sensors).stderr, /^import_ros: [^\n]*topics are those of the cameras right is not clear[^\n]*\n$/);
+  assert.match(run("given.mcap", sensors).stderr, /^import_ros: [^\n]*topics are those of the cameras right is not clear[^\n]* none left: IMAGE_right is another sensor's already\n$/);
 });
 
 test("names that fit two topics, or none, are not guessed", async () => {

@@ -56,9 +56,9 @@ class UdpPackets : public PacketSource {
         inet_pton(AF_INET, address.c_str(), &local.sin_addr) == 1 &&
         bind(socket_.get(), reinterpret_cast<sockaddr*>(&local), sizeof(local)) == 0;
     if (!is_bound) {
-      const std::string why = std::strerror(errno);
-      throw std::runtime_error("cannot receive on UDP " + name_ + ": " +
-                               (doubt_.empty() ? why : doubt_));
+      const int error = errno;
+      throw std::runtime_error("cannot receive on UDP " + name_ + ": " + std::strerror(error) +
+                               (error == EADDRNOTAVAIL ? ": " + doubt_ : ""));
     }
   }
 

@@ -127,9 +127,8 @@ std::string ToYaml(const CalibrationResult& result) {
          "chessboard_turn_rad: " +
          ListYaml(result.chessboard_turn.value_rad) + "\nchessboard_turn_standard_error_rad: " +
          ListYaml(result.chessboard_turn.standard_error_rad) + "\n" +
-         LensCorrectionYaml(
-             result.lens_correction,
-             WhichToTake(result.lens_correction, result.T_camera_lidar, result.held_out)) +
+         LensCorrectionYaml(result.lens_correction,
+                            WhichToTake(result.lens_correction, result.T_camera_lidar)) +
          "# reprojection error of the board's centre in pixels, and times the metres per pixel at "
          "the\n"
          "# board; mean distance of the board's corners; angle between the normals;\n"

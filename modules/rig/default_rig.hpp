@@ -11,7 +11,7 @@ namespace voqcal {
 /// Every key of a rig file: what must be given by an example, all else by its default.
 std::vector<YamlDocument::KnownKey> DefaultRigKeys();
 
-/// That camera's example.
+/// The camera of that example.
 CameraModel ExampleCamera();
 
 /// The same as a rig file that says what each means.

@@ -17,6 +17,7 @@
 #include "rig/default_rig.hpp"
 #include "rig/frame_folder.hpp"
 #include "rig/frame_pairing.hpp"
+#include "rig/listening_address.hpp"
 
 namespace voqcal {
 namespace {
@@ -123,7 +124,9 @@ std::string WhyOffCentre(const CameraModel& camera) {
   const double scale_y = 2 * camera.cy_px / camera.height_px;
   if (scale_x > 0 && std::abs(scale_y / scale_x - 1) < 0.1) {
     return Format(
-        "are the intrinsics of an image of about %.0f x %.0f px? Scale all four to this one",
+        "they fit an image of about %.0f x %.0f px. Look at an image: if it has that size, "
+        "width_px "
+        "and height_px are wrong; else scale all four intrinsics to this size",
         2 * camera.cx_px,
         2 * camera.cy_px);
   }
@@ -248,6 +251,13 @@ void DoubtSensorFiles(const LidarSensorOptions& sensor, Lines* lines) {
   DoubtFile("lidar_driver.sensor.bias_from", sensor.bias_from, lines);
 }
 
+void DoubtAddress(const LidarSensorOptions& sensor, Lines* lines) {
+  if (!sensor.pcap.empty()) return;
+  const std::string doubt = AddressDoubt(sensor.address);
+  if (!doubt.empty())
+    lines->push_back("lidar_driver.sensor.address is " + sensor.address + ": " + doubt);
+}
+
 void DoubtVideo(const CameraDriverOptions& camera, Lines* lines) {
   DoubtFile("camera_driver.device", camera.device, lines);
   if (camera.url.find("://") == std::string::npos)
@@ -286,6 +296,7 @@ std::vector<std::string> DriverDoubts(const Rig& rig) {
   if (lines.empty()) DoubtPairing(rig, &lines);
   if (rig.lidar_driver.source == LidarDriverOptions::Source::kSensor) {
     DoubtSensorFiles(rig.lidar_sensor, &lines);
+    DoubtAddress(rig.lidar_sensor, &lines);
   }
   if (rig.camera_driver.source == CameraDriverOptions::Source::kVideo) {
     DoubtVideo(rig.camera_driver, &lines);

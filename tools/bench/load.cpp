@@ -46,6 +46,7 @@ struct Sender {
   std::string channel;
   std::string board_channel;  ///< Of its detector's answers.
   double rate_hz = 0.0;
+  int jpeg_quality = 0;
   std::vector<PointCloud> sweeps;
   std::vector<std::vector<std::uint8_t>> jpegs;
 };
@@ -75,20 +76,21 @@ Sender CameraOf(const Rig& rig) {
   sender.channel = rig.channels.camera_image;
   sender.board_channel = rig.channels.camera_board;
   sender.rate_hz = rig.camera_driver.rate_hz;
+  sender.jpeg_quality = rig.camera_driver.jpeg_quality;
   return sender;
 }
 
-/// Of a pair.
+/// What a pair of sensors sees.
 void FillFrames(const Rig& rig, std::vector<Sender>* senders) {
   const Simulation simulation(rig.simulation, rig.board, rig.camera);
   for (const double time_s : StopsS(rig.simulation)) {
     senders->at(0).sweeps.push_back(simulation.Sweep(time_s));
     senders->at(1).jpegs.push_back(
-        EncodeJpeg(simulation.Image(time_s), rig.camera_driver.jpeg_quality));
+        EncodeJpeg(simulation.Image(time_s), senders->at(1).jpeg_quality));
   }
 }
 
-/// Of several sensors in one world.
+/// What several sensors see of one world.
 void FillFramesOfRig(const Rig& rig, std::vector<Sender>* senders) {
   RigSimulation simulation(rig.simulated_rig, rig.board);
   for (Sender& sender : *senders) {
@@ -98,14 +100,13 @@ void FillFramesOfRig(const Rig& rig, std::vector<Sender>* senders) {
         sender.sweeps.push_back(simulation.Sweep(lidar, time_s));
       } else {
         const std::size_t camera = IndexOfName(rig.simulated_rig.cameras, sender.name);
-        sender.jpegs.push_back(
-            EncodeJpeg(simulation.Image(camera, time_s), rig.camera_driver.jpeg_quality));
+        sender.jpegs.push_back(EncodeJpeg(simulation.Image(camera, time_s), sender.jpeg_quality));
       }
     }
   }
 }
 
-/// Of each of the rig's sensors.
+/// One for each of the rig's sensors.
 std::vector<Sender> SendersOf(const std::vector<Rig>& pairs, double rate_share) {
   std::vector<Sender> senders;
   std::set<std::string> names;
@@ -116,7 +117,7 @@ std::vector<Sender> SendersOf(const std::vector<Rig>& pairs, double rate_share) 
     if (names.insert(rig.camera_name).second) senders.push_back(CameraOf(rig));
   }
   for (Sender& sender : senders) sender.rate_hz *= rate_share;
-  if (pairs.size() == 1) {
+  if (pairs.front().simulated_rig.lidars.empty()) {
     FillFrames(pairs.front(), &senders);
   } else {
     FillFramesOfRig(pairs.front(), &senders);
@@ -166,7 +167,7 @@ void HearAnswers(const std::string& channel, Bus* bus, SensorLoad* load) {
 }
 
 void Run(const LoadArgs& args) {
-  const std::vector<Rig> pairs = LoadPairs(args.rig, PairLine::kIsIgnored);
+  const std::vector<Rig> pairs = LoadPairs(args.rig);
   const std::string& lcm_url = pairs.front().lcm_url;
   const std::vector<Sender> senders = SendersOf(pairs, args.rate_share);
   LoadReport report(args.watched);

@@ -113,7 +113,8 @@ std::int64_t LoadReport::NumLost() const {
 
 std::string LoadReport::Text() const {
   std::string text;
-  for (const auto& [name, sensor] : sensors_) text += Format("%-7s ", name.c_str()) + sensor.Text();
+  for (const auto& [name, sensor] : sensors_)
+    text += Format("%-12s ", name.c_str()) + sensor.Text();
   for (const auto& [module, status] : statuses_) {
     for (const channel_status_t& channel : status.channels) {
       if (channel.num_lost + channel.num_malformed == 0) continue;

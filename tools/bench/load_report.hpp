@@ -28,7 +28,7 @@ class LoadReport {
   /// @param watched  NAME=PID of each module.
   explicit LoadReport(const std::vector<std::string>& watched);
 
-  /// To be answered; it stays where it is.
+  /// Counts what this sensor is sent and answered; the pointer stays valid.
   SensorLoad* AddSensor(const std::string& name) { return &sensors_[name]; }
   void Take(const module_status_t& message) { statuses_[message.module] = message; }
   /// Once a second.

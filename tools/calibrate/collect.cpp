@@ -114,13 +114,19 @@ std::unique_ptr<OfflineRun> CollectSamples(const Rig& rig,
 std::string CountsOf(const OfflineRun& run) {
   std::string text;
   for (const Module* module : run.modules()) {
-    // Who asks says itself that nothing came of it.
     const auto& counters = module->counters();
-    if (counters.size() == counters.count("without a result")) continue;
+    const bool counts_failure_alone = counters.size() == counters.count("without a result");
+    if (counts_failure_alone) continue;
     text += (text.empty() ? "" : "; ") + module->Name() + ": " + module->Summary();
   }
   const std::string losses = run.Losses();
-  return losses.empty() ? text : text + "; in the recording: " + losses;
+  if (losses.empty()) return text;
+  return text + (text.empty() ? "" : "; ") + "in the recording: " + losses;
+}
+
+std::string CountsLine(const OfflineRun& run) {
+  const std::string counts = CountsOf(run);
+  return counts.empty() ? "" : "\ncounted: " + counts;
 }
 
 }  // namespace voqcal

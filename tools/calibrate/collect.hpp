@@ -28,4 +28,7 @@ std::unique_ptr<OfflineRun> CollectSamples(const Rig& rig,
 /// "lidar_board_detector: 30 boards; sample_collector: 28 accepted, 2 board is moving".
 std::string CountsOf(const OfflineRun& run);
 
+/// The same as a line of an error, with its line break before it; empty if nothing was counted.
+std::string CountsLine(const OfflineRun& run);
+
 }  // namespace voqcal

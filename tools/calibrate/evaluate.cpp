@@ -91,7 +91,7 @@ void Evaluate(const EvaluateArgs& args) {
   run->Finish(/*is_collecting_only=*/true);
   if (run->samples().empty()) {
     throw std::runtime_error(args.input.Given().string() + ": no sample to score" +
-                             FailureAdvice(*run) + "\nframes: " + CountsOf(*run));
+                             FailureAdvice(*run) + CountsLine(*run));
   }
   const Consistency consistency = FindConsistent(run->samples(), rig.consistency);
   const std::vector<BoardSample> consistent = ConsistentSamples(run->samples(), consistency);

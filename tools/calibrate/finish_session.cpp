@@ -60,8 +60,8 @@ void FinishSession(const Rig& rig,
   if (!run->assessor().result()) {
     const std::string why = input.string() + ": no calibration: " + run->assessor().problem();
     const std::string advice = FailureAdvice(*run) + (wrong_sign.empty() ? "" : "\n" + wrong_sign);
-    throw NoCalibration(why + EarlierResultIn(folders.out) + advice + "\nframes: " +
-                        CountsOf(*run) + SeenInstead(rig, *run, why + advice, folders));
+    throw NoCalibration(why + EarlierResultIn(folders.out) + advice + CountsLine(*run) +
+                        SeenInstead(rig, *run, why + advice, folders));
   }
   const std::string report_problem = WriteReport(rig, *run, folders.scratch);
   Deliver(folders);

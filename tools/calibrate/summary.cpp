@@ -40,7 +40,8 @@ std::string TransformLines(const CalibrationResult& result) {
          SigmaText(1e3 * sigma.tail<3>(), "%.1f %.1f %.1f", " mm\n") +
          Format(
              "  quaternion_xyzw  %9.6f %9.6f %9.6f %9.6f   1 sigma ", q.x(), q.y(), q.z(), q.w()) +
-         SigmaText(kDegPerRad * sigma.head<3>(), "%.3f %.3f %.3f", " deg\n");
+         SigmaText(kDegPerRad * sigma.head<3>(), "%.3f %.3f %.3f", " deg\n") +
+         "  for this lens and this board; what could hide there is said under \"not judged\"\n";
 }
 
 // The average is not held out: its own samples flatter it.
@@ -98,7 +99,7 @@ std::string LensLines(const CalibrationResult& result) {
              px[kPrincipalPointY],
              px[kRadial2],
              px[kRadial4]) +
-         WhichToTake(lens, result.T_camera_lidar, result.held_out) + "\n";
+         WhichToTake(lens, result.T_camera_lidar) + "\n";
 }
 
 std::string SceneLines(const CalibrationResult& result) {

@@ -126,21 +126,12 @@ std::size_t MostAtOnce() {
       std::max(1.0, (AvailableBytes() - bytes_of_scenes) / kBytesOfPair));
 }
 
-/// Of lines that each begin with a line break.
-std::string InOneLine(const std::string& text) {
-  std::istringstream lines(text);
-  std::string joined;
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.empty()) joined += (joined.empty() ? "" : "; ") + line;
-  }
-  return joined;
-}
-
 PairSession Calibrate(const Rig& rig,
                       const RigRecording& recording,
                       bool use_log_times,
                       const BoardsOfPair& boards,
-                      const RigFolders& folders) {
+                      const RigFolders& folders,
+                      std::string* advice) {
   const std::string folder = FolderOf(rig);
   const SessionFolders session_folders = {folders.scratch / folder, folders.out / folder};
   std::filesystem::create_directories(session_folders.scratch);
@@ -157,8 +148,7 @@ PairSession Calibrate(const Rig& rig,
   PairSession session = SessionOf(rig);
   session.use_log_times = use_log_times;
   TakeResult(run.samples(), run.assessor().result(), run.assessor().problem(), &session);
-  const std::string advice = FailureAdvice(run);
-  if (!run.assessor().result() && !advice.empty()) session.pair.problem = InOneLine(advice);
+  if (!run.assessor().result()) *advice = FailureAdvice(run);
   return session;
 }
 
@@ -166,22 +156,25 @@ PairSession Calibrate(const Rig& rig,
 
 std::string FolderOf(const Rig& pair) { return PairName(pair.lidar_name, pair.camera_name); }
 
-std::vector<PairSession> CalibratePairs(const std::vector<Rig>& pairs,
-                                        const RigRecording& recording,
-                                        const RigFolders& folders) {
+CalibratedPairs CalibratePairs(const std::vector<Rig>& pairs,
+                               const RigRecording& recording,
+                               const RigFolders& folders) {
   const std::vector<bool> use_log_times = UseLogTimes(pairs, recording);
   const BoardsBySensor boards = Detect(DetectionsOf(pairs, use_log_times), recording);
-  std::vector<PairSession> sessions(pairs.size());
+  CalibratedPairs calibrated;
+  calibrated.sessions.resize(pairs.size());
+  calibrated.advice.resize(pairs.size());
   ParallelFor(
       pairs.size(),
       [&](std::size_t i) {
         const bool use_log = use_log_times[i];
         const BoardsOfPair own = {boards.at({pairs[i].lidar_name, use_log}).get(),
                                   boards.at({pairs[i].camera_name, use_log}).get()};
-        sessions[i] = Calibrate(pairs[i], recording, use_log, own, folders);
+        calibrated.sessions[i] =
+            Calibrate(pairs[i], recording, use_log, own, folders, &calibrated.advice[i]);
       },
       MostAtOnce());
-  return sessions;
+  return calibrated;
 }
 
 }  // namespace voqcal

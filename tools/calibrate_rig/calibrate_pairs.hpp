@@ -26,13 +26,18 @@ struct RigRecording {
 /// "front_left".
 std::string FolderOf(const Rig& pair);
 
+struct CalibratedPairs {
+  std::vector<PairSession> sessions;
+  std::vector<std::string> advice;  ///< Of each pair without a result, FailureAdvice; else empty.
+};
+
 /// Does with each pair of a rig what calibrate does, but detects the boards of each sensor once for
 /// all its pairs. Each pair's session is that of calibrate, byte for byte.
 ///
 /// @throws std::runtime_error naming the log and the cause. That a pair gives no calibration is not
 ///     thrown but told, and its `problem`.
-std::vector<PairSession> CalibratePairs(const std::vector<Rig>& pairs,
-                                        const RigRecording& recording,
-                                        const RigFolders& folders);
+CalibratedPairs CalibratePairs(const std::vector<Rig>& pairs,
+                               const RigRecording& recording,
+                               const RigFolders& folders);
 
 }  // namespace voqcal

@@ -1,5 +1,6 @@
 // calibrate_rig: every pair of a rig's lidars and cameras on one recording, joined to one tree.
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
@@ -157,16 +158,20 @@ void RequireFolder(const CalibrateRigArgs& args, const std::vector<Rig>& pairs) 
 }
 
 /// @throws std::runtime_error unless the rig is one piece.
-void RequireOnePiece(const CalibrateRigArgs& args, const RigExtrinsics& result) {
+///
+/// @param advice  of each pair, where nearly all frames failed for one reason.
+void RequireOnePiece(const CalibrateRigArgs& args,
+                     const RigExtrinsics& result,
+                     const std::vector<std::string>& advice) {
   if (result.network.IsUsable()) return;
-  std::string text = args.Given() + ": no calibration of the rig: " + result.network.problem;
+  const bool has_cause = std::any_of(
+      advice.begin(), advice.end(), [](const std::string& each) { return !each.empty(); });
+  std::string text =
+      args.Given() + ": no calibration of the rig: " +
+      (has_cause ? "mend what was said of its pairs, above" : result.network.problem);
   for (const CalibratedPair& pair : result.pairs) {
-    if (!pair.problem.empty()) text += "\n" + pair.Name() + ": " + pair.problem;
+    if (!has_cause && !pair.problem.empty()) text += "\n" + pair.Name() + ": " + pair.problem;
   }
-  text +=
-      "\nMend what keeps a pair's sensors from seeing the board; if nothing does, hold the board "
-      "where "
-      "a lidar and a camera of different parts both see it, until every part is joined";
   const std::filesystem::path earlier = args.out / kRigResultName;
   if (std::filesystem::exists(earlier)) text += "\n" + earlier.string() + " is of an earlier run";
   throw std::runtime_error(text);
@@ -186,7 +191,7 @@ std::filesystem::path Import(const CalibrateRigArgs& args,
   return ImportBag(rig, bag, args.times, folder);
 }
 
-std::vector<PairSession> SessionsOf(const CalibrateRigArgs& args, const std::vector<Rig>& pairs) {
+CalibratedPairs CalibrateAll(const CalibrateRigArgs& args, const std::vector<Rig>& pairs) {
   if (args.bag.empty()) RequireChannels(args, pairs);
   const ScratchFolder scratch(args.out);
   RigRecording recording = {args.log, args.times, args.Given()};
@@ -212,11 +217,13 @@ void CalibrateRig(const CalibrateRigArgs& args) {
   RequireSensors(args, sensors);
   RequireFolder(args, pairs);
   TellDoubts(pairs);
-  const std::vector<PairSession> sessions = SessionsOf(args, pairs);
+  const CalibratedPairs calibrated = CalibrateAll(args, pairs);
   const std::string reference = args.reference.empty() ? sensors.lidars.front() : args.reference;
-  const RigExtrinsics result = JoinSessions(
-      sessions, reference, {pairs.front().rig_name, pairs.front().sha256, VOQCAL_VERSION});
-  RequireOnePiece(args, result);
+  const RigExtrinsics result =
+      JoinSessions(calibrated.sessions,
+                   reference,
+                   {pairs.front().rig_name, pairs.front().sha256, VOQCAL_VERSION});
+  RequireOnePiece(args, result, calibrated.advice);
   WriteFileAtomically(args.out / kRigResultName, ToYaml(result));
   std::cout << Summary(result) << "written\n  " << (args.out / kRigResultName).string() << '\n';
   for (const Rig& rig : pairs) std::cout << "  " << (args.out / FolderOf(rig)).string() << "/\n";

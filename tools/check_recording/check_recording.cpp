@@ -29,9 +29,8 @@ std::string NamesOf(const std::vector<std::filesystem::path>& logs) {
 
 RecordingContents Read(const std::vector<std::filesystem::path>& logs) {
   Progress progress("reading " + NamesOf(logs));
-  return ContentsOf(logs, [&progress](const std::filesystem::path& log, double share) {
-    progress.Show(share, log.filename().string());
-  });
+  const std::string num = std::to_string(logs.size()) + (logs.size() == 1 ? " log" : " logs");
+  return ContentsOf(logs, [&](double share) { progress.Show(share, num); });
 }
 
 void PrintChannels(const RecordingContents& contents) {

@@ -114,19 +114,21 @@ std::string RecordingContents::Unknown() const {
   return text;
 }
 
-RecordingContents ContentsOf(
-    const std::vector<std::filesystem::path>& logs,
-    const std::function<void(const std::filesystem::path& log, double share)>& on_progress) {
+RecordingContents ContentsOf(const std::vector<std::filesystem::path>& logs,
+                             const std::function<void(double share)>& on_progress) {
+  std::int64_t num_all_bytes = 0;
+  for (const std::filesystem::path& log : logs) num_all_bytes += LogReader(log).num_bytes();
   RecordingContents contents;
   for (const std::filesystem::path& log : logs) {
     LogReader reader(log);
+    const std::int64_t num_bytes_before = contents.num_bytes;
     contents.num_bytes += reader.num_bytes();
     try {
       while (const std::optional<LogEvent> event = reader.Next()) {
         contents.Take(*event);
         if (!on_progress) continue;
-        on_progress(log,
-                    static_cast<double>(reader.offset()) / static_cast<double>(reader.num_bytes()));
+        on_progress(static_cast<double>(num_bytes_before + reader.offset()) /
+                    static_cast<double>(num_all_bytes));
       }
     } catch (const TruncatedLogError& error) {
       contents.num_cut_bytes += reader.num_bytes() - error.offset();

@@ -50,13 +50,10 @@ struct RecordingContents {
   std::string Unknown() const;
 };
 
-/// @param logs         one recording, in its order: a recorder that was started again begins
-/// another
-///     file.
-/// @param on_progress  hears how much of the log at work is read, 0 to 1.
+/// @param logs  one recording, in its order: a recorder that was started again begins another file.
+/// @param on_progress  hears how much of all logs is read, 0 to 1.
 /// @throws std::runtime_error naming the log, if it cannot be read or is no LCM log.
-RecordingContents ContentsOf(
-    const std::vector<std::filesystem::path>& logs,
-    const std::function<void(const std::filesystem::path& log, double share)>& on_progress = {});
+RecordingContents ContentsOf(const std::vector<std::filesystem::path>& logs,
+                             const std::function<void(double share)>& on_progress = {});
 
 }  // namespace voqcal

@@ -16,7 +16,6 @@
 #include "health/session_programs.hpp"
 #include "rig/default_rig.hpp"
 #include "rig/frame_pairing.hpp"
-#include "rig/listening_address.hpp"
 #include "rig/rig.hpp"
 #include "rig/rig_doubts.hpp"
 
@@ -71,19 +70,6 @@ void PrintShared(const std::string& name, const Rig& rig) {
               rig.board.square_m);
 }
 
-/// Where a lidar's packets are awaited. Not a doubt of the rig file: it may be another host's.
-void PrintAddress(const Rig& rig) {
-  const LidarSensorOptions& sensor = rig.lidar_sensor;
-  if (rig.lidar_driver.source != LidarDriverOptions::Source::kSensor || !sensor.pcap.empty())
-    return;
-  const std::string doubt = AddressDoubt(sensor.address);
-  std::printf("listens    %s:%d%s%s\n",
-              sensor.address.c_str(),
-              sensor.Port(),
-              doubt.empty() ? "" : ": ",
-              doubt.c_str());
-}
-
 void PrintRig(const Rig& rig) {
   PrintShared(rig.name, rig);
   std::printf("camera     %s\n", LensOf(rig.camera).c_str());
@@ -92,7 +78,6 @@ void PrintRig(const Rig& rig) {
   std::printf("drivers    lidar: %s, camera: %s\n",
               LidarSourceOf(rig).c_str(),
               CameraSourceOf(rig).c_str());
-  PrintAddress(rig);
 }
 
 /// A file's sensors, each once, and the names of its pairs.
@@ -105,7 +90,6 @@ void PrintPairs(const std::vector<Rig>& pairs) {
                 rig.lidar_name.c_str(),
                 rig.channels.lidar_points.c_str(),
                 LidarSourceOf(rig).c_str());
-    PrintAddress(rig);
   }
   for (const Rig& rig : pairs) {
     if (!told.insert(rig.camera_name).second) continue;
@@ -129,16 +113,27 @@ std::vector<std::string> DoubtsOf(const std::vector<Rig>& pairs) {
   return lines;
 }
 
+/// Folders may hold what was recorded of a board at rest, or one frame of each place.
+void TellStillness(const Rig& rig) {
+  const int num_still_frames = rig.sample_collector.num_still_frames;
+  if (num_still_frames <= 1) return;
+  std::printf(
+      "rests      through %d frames of each place (sample_collector.num_still_frames; 1, if "
+      "the folders have one frame of each)\n",
+      num_still_frames);
+}
+
 /// @throws DemandNotMet with a line for each thing that is hardly meant so.
 void JudgeRigs(const std::filesystem::path& path, const std::vector<Rig>& pairs) {
   std::string text;
   for (const std::string& line : DoubtsOf(pairs)) text += '\n' + line;
   if (!text.empty()) {
-    throw DemandNotMet(path.string() + ": can be read, but hardly be right:" + text);
+    throw DemandNotMet(path.string() + ": can be read, but can hardly be right:" + text);
   }
   for (const Rig& rig : pairs) {
     const std::string pairing = PairingOfDrivers(rig);
     if (pairing.empty()) continue;
+    TellStillness(rig);
     const std::string whose = rig.lidar_name + ", " + rig.camera_name + ": ";
     std::printf("frames     %s%s\n", pairs.size() > 1 ? whose.c_str() : "", pairing.c_str());
   }

@@ -36,7 +36,7 @@ struct Session {
   SimulationOptions options;
   SpoiltWorld spoilt;
   CameraModel camera;  ///< That the rig file has.
-  BoardSpec board;     ///< The same.
+  BoardSpec board;     ///< That the rig file has.
 };
 
 struct WrongModel {

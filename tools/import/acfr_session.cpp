@@ -157,7 +157,7 @@ class OtherSizes {
   std::string first_;
 };
 
-/// Where the board rests: such a session has one frame of each place.
+/// Such a session has one frame of each place, so the board cannot be seen to rest.
 std::string StillnessDoubt(const Rig& rig) {
   const int num_still_frames = rig.sample_collector.num_still_frames;
   if (num_still_frames <= 1) return "";

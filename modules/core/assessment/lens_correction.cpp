@@ -97,20 +97,29 @@ LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
   return correction;
 }
 
-std::string WhichToTake(const LensCorrection& correction,
-                        const Eigen::Isometry3d& T_camera_lidar,
-                        const SceneScore& held_out) {
+std::string OtherLens(const LensCorrection& correction, const SceneScore& held_out) {
+  if (!correction.IsUsable()) return "";
+  const LensErrors& errors = correction.errors.errors;
+  const double reach_px = LensReachPx(correction.camera);
+  return Format(
+      "the samples ask for another lens: focal length %+.2f %%, principal point %+.1f %+.1f px. "
+      "Corners of boards held out err by %.1f mm with it, by %.1f mm with the rig file's",
+      100 * errors[kFocalLength],
+      reach_px * errors[kPrincipalPointX],
+      reach_px * errors[kPrincipalPointY],
+      correction.held_out.corner_mm.mean,
+      held_out.corner_mm.mean);
+}
+
+std::string WhichToTake(const LensCorrection& correction, const Eigen::Isometry3d& T_camera_lidar) {
   if (!correction.IsUsable()) return "";
   const Vector6d move = DifferenceLeft(T_camera_lidar, correction.T_camera_lidar);
   return Format(
       "Take T_camera_lidar with the intrinsics of the rig file, wherever these are used. Take "
       "lens_correction's only together with its camera, everywhere: it is turned by %.2f deg and "
-      "shifted by %.0f mm, and either with the other's intrinsics is off by as much. With "
-      "lens_correction the corners of boards held out err by %.1f mm, without by %.1f mm.",
+      "shifted by %.1f mm, and either with the other's intrinsics is off by as much.",
       kDegPerRad * move.head<3>().norm(),
-      kMmPerM * move.tail<3>().norm(),
-      correction.held_out.corner_mm.mean,
-      held_out.corner_mm.mean);
+      kMmPerM * move.tail<3>().norm());
 }
 
 }  // namespace voqcal

@@ -47,11 +47,15 @@ LensCorrection CorrectLens(const std::vector<const BoardSample*>& samples,
                            const SceneScore& held_out_without,
                            const LikelihoodOptions& options);
 
+/// "the samples ask for another lens: focal length +0.67 %, ...", with the errors of boards held
+/// out by both; empty if there is no correction.
+///
+/// @param held_out  the result's, with the intrinsics that were given.
+std::string OtherLens(const LensCorrection& correction, const SceneScore& held_out);
+
 /// Which of the two extrinsics to take, for people; empty if there is no correction.
 ///
-/// @param T_camera_lidar, held_out  the result with the intrinsics that were given, and its scores.
-std::string WhichToTake(const LensCorrection& correction,
-                        const Eigen::Isometry3d& T_camera_lidar,
-                        const SceneScore& held_out);
+/// @param T_camera_lidar  the result with the intrinsics that were given.
+std::string WhichToTake(const LensCorrection& correction, const Eigen::Isometry3d& T_camera_lidar);
 
 }  // namespace voqcal

@@ -122,13 +122,15 @@ void AddCertainty(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   AddNumber("Certainty of the rotation",
             evidence.sigma_deg,
             kSigmaDeg,
-            "Largest standard deviation " + Number(evidence.sigma_deg, 3, "degrees") + ".",
+            "Largest standard deviation " + Number(evidence.sigma_deg, 3, "degrees") +
+                " (good: " + Number(kSigmaDeg.good, 3, "at most") + ").",
             "Take more samples, far to the left and right and high and low.",
             checks);
   AddNumber("Certainty of the translation",
             evidence.sigma_mm,
             kSigmaMm,
-            "Standard deviation " + Number(evidence.sigma_mm, 1, "mm") + ", of all three axes.",
+            "Standard deviation " + Number(evidence.sigma_mm, 1, "mm") +
+                ", the three axes' together (good: " + Number(kSigmaMm.good, 1, "at most") + ").",
             "Take more samples, near ones too, tilted to all sides.",
             checks);
 }
@@ -162,17 +164,29 @@ void AddPoses(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
       checks);
 }
 
+/// A lens that fits better is no fault of an extrinsic that goes with the one that was given.
+void AddLens(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
+  if (evidence.other_lens.empty()) return;
+  Add("The lens",
+      Grade::kLook,
+      Sentence(evidence.other_lens),
+      "Use the result with the rig file's lens only. To do better, calibrate the lens "
+      "(calibrate_lens), put it into the rig file, and calibrate again.",
+      checks);
+}
+
 /// A cause that makes the result wrong comes before all that it may have led to.
 void AddCause(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   const std::string& fault = evidence.likeliest_fault;
   const Grade grade = fault.empty()             ? Grade::kGood
                       : evidence.must_be_mended ? Grade::kBad
                                                 : Grade::kLook;
+  std::string text = "Nothing was found that would explain the errors better.";
+  if (!evidence.other_lens.empty())
+    text = "But for the lens nothing was found that would explain the errors better.";
+  if (!fault.empty()) text = Sentence(fault);
   checks->insert(grade == Grade::kBad ? checks->begin() : checks->end(),
-                 {"Signs of a fault",
-                  grade,
-                  fault.empty() ? "Nothing was found that would explain the errors better."
-                                : Sentence(fault)});
+                 {"Signs of a fault", grade, text});
 }
 
 /// The scene's own word, where it has one.
@@ -222,6 +236,7 @@ Verdict VerdictOf(const Evidence& evidence) {
   AddCertainty(evidence, &verdict.checks);
   AddPoses(evidence, &verdict.checks);
   AddScene(evidence, &verdict.checks);
+  AddLens(evidence, &verdict.checks);
   AddCause(evidence, &verdict.checks);
   verdict.grade = std::max_element(verdict.checks.begin(),
                                    verdict.checks.end(),

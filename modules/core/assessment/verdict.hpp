@@ -20,8 +20,10 @@ struct Evidence {
   bool is_enough = false;  ///< Enough's, as the guide says it.
   std::string enough_words;
   int num_samples = 0;  ///< With those that were left out.
-  std::vector<std::string>
-      empty_parts;  ///< Of the image (ImagePartNames): those without a used pose.
+  /// Which other lens the samples ask for, a sentence; empty if for none (LensCorrection).
+  std::string other_lens;
+  /// Of the image (ImagePartNames): those without a used pose.
+  std::vector<std::string> empty_parts;
   Agreement scene = Agreement::kCannotTell;
   std::string scene_reason;
   std::string likeliest_fault;  ///< A sentence; empty: none was found.

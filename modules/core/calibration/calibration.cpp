@@ -31,6 +31,7 @@ Evidence EvidenceOf(const Calibration& calibration) {
   evidence.enough_words = calibration.enough.words;
   evidence.num_samples =
       static_cast<int>(calibration.used_ids.size() + calibration.rejected.size());
+  evidence.other_lens = OtherLens(calibration.lens_correction, calibration.held_out);
   evidence.empty_parts = PartsWithout(calibration.held_out_by_cell);
   evidence.scene = calibration.scene_check.verdict;
   evidence.scene_reason = calibration.scene_check.reason;

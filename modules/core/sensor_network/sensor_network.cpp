@@ -81,7 +81,9 @@ std::string PiecesProblem(const std::vector<std::string>& sensors, const PairGra
     }
     pieces.push_back(Listed(names, ", "));
   }
-  return "no pair joins these parts of the rig: " + Listed(pieces, " | ");
+  return "no pair joins these parts of the rig: " + Listed(pieces, " | ") +
+         "; hold the board where a lidar and a camera of different parts both see it, until every "
+         "part is joined";
 }
 
 // Each pair in a loop against all the others.

@@ -11,6 +11,7 @@
 namespace voqcal {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
@@ -72,17 +73,27 @@ TEST(CorrectLens, LeavesTheRightLensAlone) {
 
 TEST(WhichToTake, SaysHowFarTheTwoAreApart) {
   LensCorrection correction;
-  EXPECT_EQ(WhichToTake(correction, test::TestExtrinsic(), {}), "");
+  EXPECT_EQ(WhichToTake(correction, test::TestExtrinsic()), "");
   correction.problem.clear();
   Vector6d move;
   move << 0.01, 0, 0, 0, 0.012, 0;
   correction.T_camera_lidar = PerturbLeft(test::TestExtrinsic(), move);
+  const std::string words = WhichToTake(correction, test::TestExtrinsic());
+  EXPECT_THAT(words, HasSubstr("turned by 0.57 deg and shifted by 12.0 mm"));
+}
+
+TEST(OtherLens, SaysWhichAndWhatItGains) {
+  LensCorrection correction;
+  EXPECT_EQ(OtherLens(correction, {}), "");
+  correction.problem.clear();
+  correction.camera = test::TestCamera();
+  correction.errors.errors[kFocalLength] = 0.0067;
   correction.held_out.corner_mm.mean = 5.2;
   SceneScore without;
   without.corner_mm.mean = 7.0;
-  const std::string words = WhichToTake(correction, test::TestExtrinsic(), without);
-  EXPECT_THAT(words, HasSubstr("turned by 0.57 deg and shifted by 12 mm"));
-  EXPECT_THAT(words, HasSubstr("err by 5.2 mm, without by 7.0 mm"));
+  EXPECT_THAT(OtherLens(correction, without),
+              AllOf(HasSubstr("focal length +0.67 %"),
+                    HasSubstr("err by 5.2 mm with it, by 7.0 mm with the rig file's")));
 }
 
 TEST(CorrectLens, SaysWhatItLacks) {

@@ -107,6 +107,15 @@ TEST(VerdictOf, WantsMoreOfPosesAndParts) {
   EXPECT_EQ(without_parts(8), Grade::kBad);
 }
 
+TEST(VerdictOf, LooksAtALensThatFitsBetter) {
+  const Verdict verdict =
+      JudgeWith([](Evidence* e) { e->other_lens = "the samples ask for another lens"; });
+  EXPECT_EQ(verdict.grade, Grade::kLook);
+  EXPECT_THAT(
+      verdict.checks,
+      Contains(Field(&VerdictCheck::text, HasSubstr("But for the lens nothing was found"))));
+}
+
 TEST(VerdictOf, DoesNotCallTheUnknownGood) {
   const Verdict verdict = VerdictOf(Evidence{});
   EXPECT_EQ(verdict.grade, Grade::kBad);  // no poses

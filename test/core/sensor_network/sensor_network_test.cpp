@@ -250,7 +250,7 @@ TEST(JoinPairs, SaysWhichSensorsToJoin) {
   const SensorNetwork network =
       JoinPairs(kFive, "lidar_a", {rig.Exact("lidar_a", "front"), rig.Exact("lidar_b", "rear")});
   EXPECT_FALSE(network.IsUsable());
-  EXPECT_THAT(network.problem, HasSubstr("lidar_a, front | lidar_b, rear | left"));
+  EXPECT_THAT(network.problem, HasSubstr("lidar_a, front | lidar_b, rear | left;"));
   EXPECT_THROW(network.Between("lidar_a", "front"), std::logic_error);
 }
 

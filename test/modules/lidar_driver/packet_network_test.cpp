@@ -20,7 +20,9 @@
 namespace voqcal {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Pair;
 
@@ -109,7 +111,15 @@ TEST_F(PacketNetworkTest, HearsTheNetworkAndSaysWhenItIsSilent) {
 TEST_F(PacketNetworkTest, NamesAnAddressThatIsNotOfThisHost) {
   rig_.lidar_sensor.address = "192.0.2.1";  // RFC 5737: of documentation, nobody's
   EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode node(rig_, &bus_); }),
-              HasSubstr("cannot receive on UDP 192.0.2.1:2368: no network card of this host"));
+              AllOf(HasSubstr("cannot receive on UDP 192.0.2.1:2368: "),
+                    HasSubstr("no network card of this host")));
+}
+
+TEST_F(PacketNetworkTest, NamesAPortThatAnotherHas) {
+  rig_.lidar_sensor.port = FreePort();
+  const LidarDriverNode first(rig_, &bus_);
+  EXPECT_THAT(test::ErrorOf([&] { LidarDriverNode second(rig_, &bus_); }),
+              EndsWith("Address already in use"));
 }
 
 }  // namespace

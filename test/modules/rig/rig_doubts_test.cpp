@@ -105,6 +105,8 @@ TEST(CameraDoubts, NamesTheExampleThatNobodyChanged) {
 
 TEST(AddressDoubt, TellsTheLidarsAddressFromTheHosts) {
   EXPECT_EQ(AddressDoubt("0.0.0.0"), "");
+  EXPECT_EQ(AddressDoubt("239.255.0.1"), "");
+  EXPECT_THAT(AddressDoubt("lidar.local"), HasSubstr("no IPv4 address"));
   EXPECT_THAT(AddressDoubt("127.0.0.1"), HasSubstr("only what this host itself sends"));
   // RFC 5737: of documentation, nobody's
   EXPECT_THAT(AddressDoubt("192.0.2.1"), HasSubstr("not the lidar's"));

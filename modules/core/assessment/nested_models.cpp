@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
+#include "core/assessment/judge_range_offset.hpp"
 #include "core/assessment/suspects.hpp"
 #include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
@@ -256,6 +258,27 @@ const Candidate* BestOf(const Round& round,
   return best;
 }
 
+// An offset that no lidar has comes from elsewhere, whatever that is. So the suspects that leave a
+// possible one are compared with a broken lidar, not with nothing: the likeliest by the samples and
+// by what is known of lidars is a finding, also if the result, which has the offset instead, hardly
+// moves.
+std::optional<Candidate> WhatTheOffsetIs(const Round& round,
+                                         const FaultFit& now,
+                                         const JudgedResult& result,
+                                         const DiagnosisOptions& options) {
+  constexpr double kLeastGain = 3.0;  // twenty to one
+  if (!IsBeyondLidars(result.range_offset, options)) return {};
+  if (!IsBeyondLidars(RangeOffsetOf(now), options)) return {};
+  std::optional<Candidate> best;
+  const double prior_now = LogPriorOfRangeOffset(now.Value(kRangeOffset), options);
+  for (Candidate candidate : round.candidates) {
+    if (IsBeyondLidars(RangeOffsetOf(candidate.fit), options)) continue;
+    candidate.gain += LogPriorOfRangeOffset(candidate.fit.Value(kRangeOffset), options) - prior_now;
+    if (candidate.gain > (best ? best->gain : kLeastGain)) best = candidate;
+  }
+  return best;
+}
+
 void Remove(const std::vector<FaultParameter>& faults, std::vector<Suspect>* suspects) {
   suspects->erase(std::remove_if(suspects->begin(),
                                  suspects->end(),
@@ -265,27 +288,37 @@ void Remove(const std::vector<FaultParameter>& faults, std::vector<Suspect>* sus
 
 }  // namespace
 
-void JudgeModels(const std::vector<FaultEquation>& equations,
-                 const std::vector<FaultParameter>& known,
-                 const JudgedResult& result,
-                 const DiagnosisOptions& options,
-                 Diagnosis* diagnosis) {
+FaultFit JudgeModels(const std::vector<FaultEquation>& equations,
+                     const std::vector<FaultParameter>& known,
+                     const JudgedResult& result,
+                     const DiagnosisOptions& options,
+                     Diagnosis* diagnosis) {
   FaultFit now = FitFaults(equations, known);
   if (!now.is_usable) {
     diagnosis->not_judged.push_back("what was given: the samples leave the extrinsic itself open");
-    return;
+    return now;
   }
   std::vector<FaultParameter> fitted = known;
   std::vector<Suspect> suspects = SuspectsOf(result.board, result.camera);
   for (const FaultParameter fault : known) Remove({fault}, &suspects);
   Round round = TryEach(equations, suspects, fitted, now);
-  while (const Candidate* best = BestOf(round, now, result.covariance, options)) {
-    diagnosis->findings.push_back(MakeFinding(*best, now, result));
-    now = best->fit;
-    const std::vector<FaultParameter> added = best->suspect.faults;
+  const auto take = [&](const Candidate& candidate) {
+    diagnosis->findings.push_back(MakeFinding(candidate, now, result));
+    now = candidate.fit;
+    const std::vector<FaultParameter>& added = candidate.suspect.faults;
     fitted.insert(fitted.end(), added.begin(), added.end());
     Remove(added, &suspects);
     round = TryEach(equations, suspects, fitted, now);
+  };
+  while (const Candidate* best = BestOf(round, now, result.covariance, options)) take(*best);
+  if (const auto cause = WhatTheOffsetIs(round, now, result, options)) {
+    take(*cause);
+    Finding& finding = diagnosis->findings.back();
+    finding.must_be_mended = true;
+    finding.text += Format(
+        "; instead of it %.0f mm were taken out of the lidar's ranges, more than "
+        "lidars err",
+        kMmPerM * result.range_offset.value_m);
   }
   if (ExplainTheTurn(equations, fitted, result, options, diagnosis)) {
     Remove(PrincipalPoint(result.camera).faults, &suspects);
@@ -293,6 +326,7 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
   }
   SayWhatIsOpen(round.open_groups, diagnosis);
   SayWhatCouldHide(round, result.covariance, diagnosis);
+  return now;
 }
 
 }  // namespace voqcal

@@ -63,6 +63,9 @@ class Session {
       BoardPose& pose = sample.lidar.pose;
       pose.centre_m *= 1 + offset_m / pose.centre_m.norm();
       for (Eigen::Vector3d& corner : pose.corners_m) corner *= 1 + offset_m / corner.norm();
+      for (double& length_m : sample.lidar.edge_lengths_m) {
+        length_m *= 1 + offset_m / pose.centre_m.norm();
+      }
     }
   }
   std::vector<BoardSample>& samples() { return samples_; }
@@ -287,6 +290,31 @@ TEST(Diagnose, AnOffsetThatNoLidarHasIsAFinding) {
   EXPECT_THAT(diagnosis.findings[0].text, HasSubstr("too large look the same"));
   session.range_offset.standard_error_m = 0.015;  // may be 20 mm
   EXPECT_THAT(session.Run().findings, IsEmpty());
+}
+
+// The result hardly moves, as it has the offset instead of the squares.
+TEST(Diagnose, AnOffsetThatNoLidarHasIsThatOfWrongSquares) {
+  Session session;
+  session.covariance_scale = 1e3;
+  session.given_board.square_m *= 1.02;
+  session.range_offset = {-0.06, 0.004, true};
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "board's squares");
+  EXPECT_NEAR(diagnosis.findings[0].value, -1.96, 3 * diagnosis.findings[0].standard_error + 0.1);
+  EXPECT_TRUE(diagnosis.findings[0].must_be_mended);
+  EXPECT_THAT(diagnosis.findings[0].text, HasSubstr("-60 mm were taken out"));
+  EXPECT_THAT(diagnosis.findings, SizeIs(1));  // and that is the offset
+}
+
+// With the result's prior it is less than half of what the samples say.
+TEST(Diagnose, RangesOfABrokenLidarAreNeitherWrongSquaresNorAWrongOutline) {
+  Session session;
+  session.covariance_scale = 1e3;
+  session.OffsetRanges(0.2);
+  session.range_offset = {0.09, 0.006, true};
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_THAT(diagnosis.findings, SizeIs(1));
+  EXPECT_EQ(diagnosis.findings[0].cause, "lidar range offset");
 }
 
 TEST(Diagnose, SaysWhatItCannotJudgeWithoutCorners) {

@@ -33,8 +33,18 @@ bool HalvesTheError(const FaultFit& before, const FaultFit& fit) {
   return fit.mean_held_out_error_m < 0.5 * before.mean_held_out_error_m;
 }
 
-// The result is wrong by a cause that moves it beyond its interval; by one that the rotation makes
-// good, only if lidar points land elsewhere in the image, too, or if it turns by more than
+// As far as a cause may move the result, which is as uncertain as its own size.
+double MostIntervals(const Suspect& suspect,
+                     const FaultFit& fit,
+                     const Vector6d& move,
+                     const Matrix6d& covariance) {
+  constexpr double kSigmas = 2.0;
+  const double most = 1 + kSigmas * suspect.LengthError(fit) / suspect.Length(fit);
+  return most * IntervalsOf(move, covariance);
+}
+
+// The result is wrong by a cause that may move it beyond its interval; by one that the rotation
+// makes good, only if lidar points land elsewhere in the image, too, or if it turns by more than
 // calibrations of one camera differ by.
 void WeighMove(const Suspect& suspect,
                const Vector6d& move,
@@ -42,7 +52,7 @@ void WeighMove(const Suspect& suspect,
                const JudgedResult& result,
                Finding* finding) {
   finding->moved_intervals = IntervalsOf(move, result.covariance);
-  finding->must_be_mended = finding->moved_intervals > 1;
+  finding->must_be_mended = MostIntervals(suspect, fit, move, result.covariance) > 1;
   finding->text += MoveText(move, result.covariance);
   if (!suspect.trades_rotation || !finding->must_be_mended) return;
   const Landing landing = LandingOf(CameraWith(fit.Faults(), result.camera), move, result);
@@ -82,18 +92,51 @@ Finding MakeFinding(const Candidate& candidate,
   return finding;
 }
 
-// By how many of its standard errors the mean error of poses held out falls: of pairs, as a pose
-// that is far off is so with both.
-double GainSigmas(const FaultFit& before, const FaultFit& fit) {
-  const auto num = static_cast<double>(fit.held_out_errors_m.size());
+/// How much larger numbers are than others of the same poses: of pairs, as a pose that is far off
+/// is so with both.
+struct PairedGain {
   double sum = 0;
+  double sigmas = 0;  ///< The sum by its standard error.
+};
+
+PairedGain GainOf(const std::vector<double>& larger, const std::vector<double>& smaller) {
+  PairedGain gain;
   double sum2 = 0;
-  for (std::size_t i = 0; i < fit.held_out_errors_m.size(); ++i) {
-    const double gain = before.held_out_errors_m[i] - fit.held_out_errors_m[i];
-    sum += gain;
-    sum2 += gain * gain;
+  for (std::size_t i = 0; i < larger.size(); ++i) {
+    const double difference = larger[i] - smaller[i];
+    gain.sum += difference;
+    sum2 += difference * difference;
   }
-  return sum / std::sqrt(std::max(sum2 - sum * sum / num, 0.0));
+  const double variance = sum2 - gain.sum * gain.sum / static_cast<double>(larger.size());
+  gain.sigmas = gain.sum / std::sqrt(std::max(variance, 0.0));
+  return gain;
+}
+
+constexpr double kLeastGainSigmas = 2.5;
+
+// Whether poses held out fit better: their centres...
+bool CentresFitBetter(const Candidate& candidate,
+                      const FaultFit& before,
+                      const DiagnosisOptions& options) {
+  // What no model has (edges that beams widen, a plate that is not quite flat) leaves errors that
+  // one parameter or another takes up in part, far beyond what white noise would: so the error of
+  // poses held out must fall, and for so many of them that it is no chance.
+  constexpr double kLeastFall = 0.1;
+  // ...or normals and corners gain the more, the less it falls: six times the least that is worth a
+  // word with a fall of a tenth.
+  constexpr double kLeastGainByFall = 0.6;
+  const FaultFit& fit = candidate.fit;
+  const double fall = 1 - fit.mean_held_out_error_m / before.mean_held_out_error_m;
+  if (!(fall > kLeastFall)) return false;
+  return GainOf(before.held_out_errors_m, fit.held_out_errors_m).sigmas > kLeastGainSigmas ||
+         fall * candidate.gain > kLeastGainByFall * options.min_log_likelihood_gain;
+}
+
+// ...or all that they tell. (By this alone, parameters that move centres along the view gain on
+// clean recordings, too.)
+bool AllFitsBetter(const FaultFit& before, const FaultFit& fit, const DiagnosisOptions& options) {
+  const PairedGain gain = GainOf(fit.held_out_log_likelihoods, before.held_out_log_likelihoods);
+  return gain.sum > options.min_log_likelihood_gain && gain.sigmas > kLeastGainSigmas;
 }
 
 // Beyond chance, also for samples that it was not fitted to, and of consequence: it moves the
@@ -102,23 +145,16 @@ bool IsWorthAWord(const Candidate& candidate,
                   const FaultFit& before,
                   const Matrix6d& covariance,
                   const DiagnosisOptions& options) {
-  // What no model has (edges that beams widen, a plate that is not quite flat) leaves errors that
-  // one parameter or another takes up in part, far beyond what white noise would: so the error of
-  // poses held out must fall, and for so many of them that it is no chance.
-  constexpr double kLeastFall = 0.1;
-  constexpr double kLeastGainSigmas = 2.5;
-  // ...or normals and corners gain the more, the less it falls: six times the least that is worth a
-  // word with a fall of a tenth.
-  constexpr double kLeastGainByFall = 0.6;
   const FaultFit& fit = candidate.fit;
-  const double fall = 1 - fit.mean_held_out_error_m / before.mean_held_out_error_m;
-  return candidate.gain > options.min_log_likelihood_gain &&
-         candidate.suspect.Length(fit) > 3 * candidate.suspect.LengthError(fit) &&
-         fall > kLeastFall &&
-         (GainSigmas(before, fit) > kLeastGainSigmas ||
-          fall * candidate.gain > kLeastGainByFall * options.min_log_likelihood_gain) &&
-         (HalvesTheError(before, fit) ||
-          IntervalsOf(MoveBetween(before, fit), covariance) > options.min_moved_intervals);
+  const Suspect& suspect = candidate.suspect;
+  if (!(candidate.gain > options.min_log_likelihood_gain)) return false;
+  if (!(suspect.Length(fit) > 3 * suspect.LengthError(fit))) return false;
+  // What the rotation makes good leaves the centres where they are: normals and corners show it.
+  const bool is_held_out_better = CentresFitBetter(candidate, before, options) ||
+                                  (suspect.trades_rotation && AllFitsBetter(before, fit, options));
+  return is_held_out_better && (HalvesTheError(before, fit) ||
+                                MostIntervals(suspect, fit, MoveBetween(before, fit), covariance) >
+                                    options.min_moved_intervals);
 }
 
 bool Contains(const std::vector<std::string>& words, const std::string& word) {

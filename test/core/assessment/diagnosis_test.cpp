@@ -174,6 +174,33 @@ TEST(Diagnose, FindsAWrongPrincipalPoint) {
   EXPECT_NEAR(finding.value, 67, 3 * finding.standard_error + 2);
 }
 
+// The rotation makes it good: where the centres are seems to be right, and normals tell.
+TEST(Diagnose, FindsAPrincipalPointThatTheCentresDoNotShow) {
+  Session session;
+  session.given_camera.cx_px -= 12;
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "principal point");
+  const Finding& finding = diagnosis.findings[0];
+  EXPECT_NEAR(finding.value, 12, 3 * finding.standard_error + 2);
+  EXPECT_GT(finding.held_out_after_mm, 0.9 * finding.held_out_before_mm);
+}
+
+TEST(Diagnose, WhatMayMoveTheResultBeyondItsIntervalMustBeMended) {
+  const auto with_covariance = [](double scale) {
+    Session session;
+    session.covariance_scale = scale;
+    session.given_camera.fx_px *= 1.02;
+    session.given_camera.fy_px *= 1.02;
+    return session.Run();
+  };
+  const double moved = with_covariance(1.0).findings.at(0).moved_intervals;
+  const Diagnosis nearly = with_covariance(std::pow(moved / 0.97, 2));
+  ASSERT_EQ(FirstCause(nearly), "focal length");
+  EXPECT_NEAR(nearly.findings[0].moved_intervals, 0.97, 1e-3);
+  EXPECT_TRUE(nearly.findings[0].must_be_mended);
+  EXPECT_EQ(FirstCause(with_covariance(std::pow(moved / 0.5, 2))), "none");
+}
+
 TEST(FitFaults, FindsATurnOfAllChessboards) {
   constexpr double kTurnRad = 0.015;  // about the camera's y
   std::vector<BoardSample> samples = test::SynthesizeSamples(Session::Noisy());
@@ -194,6 +221,20 @@ TEST(FitFaults, FindsATurnOfAllChessboards) {
   EXPECT_NEAR(fit.Value(kChessboardTurnX), 0.0, 3 * fit.StandardError(kChessboardTurnX));
   EXPECT_NEAR(fit.Value(kChessboardTurnY), -kTurnRad, 3 * fit.StandardError(kChessboardTurnY));
   EXPECT_LT(fit.StandardError(kChessboardTurnY), 0.1 * kTurnRad);
+}
+
+// Each sample left out is foretold worse than it is fitted; by half for each of 6 parameters, and
+// as much again for being judged by what it did not help to fit.
+TEST(FitFaults, ForetellsSamplesNearlyAsWellAsItFitsThem) {
+  const std::vector<BoardSample> samples = test::SynthesizeSamples(Session::Noisy());
+  const FaultFit fit = FitFaults(
+      MakeFaultEquations(
+          test::Pointers(samples), test::TestBoard(), test::TestCamera(), test::TestExtrinsic()),
+      {});
+  ASSERT_THAT(fit.held_out_log_likelihoods, SizeIs(samples.size()));
+  double sum = 0;
+  for (const double each : fit.held_out_log_likelihoods) sum += each;
+  EXPECT_NEAR(fit.log_likelihood - sum, 6.0, 4.0);
 }
 
 TEST(Diagnose, FindsSquaresThatWereMisMeasured) {

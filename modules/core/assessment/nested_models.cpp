@@ -302,7 +302,6 @@ std::optional<Candidate> WhatTheOffsetIs(const Round& round,
                                          const FaultFit& now,
                                          const JudgedResult& result,
                                          const DiagnosisOptions& options) {
-  constexpr double kLeastGain = 3.0;  // twenty to one
   if (!IsBeyondLidars(result.range_offset, options)) return {};
   if (!IsBeyondLidars(RangeOffsetOf(now), options)) return {};
   std::optional<Candidate> best;
@@ -310,7 +309,7 @@ std::optional<Candidate> WhatTheOffsetIs(const Round& round,
   for (Candidate candidate : round.candidates) {
     if (IsBeyondLidars(RangeOffsetOf(candidate.fit), options)) continue;
     candidate.gain += LogPriorOfRangeOffset(candidate.fit.Value(kRangeOffset), options) - prior_now;
-    if (candidate.gain > (best ? best->gain : kLeastGain)) best = candidate;
+    if (candidate.gain > (best ? best->gain : options.min_log_likelihood_gain)) best = candidate;
   }
   return best;
 }

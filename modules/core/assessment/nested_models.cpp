@@ -135,6 +135,8 @@ bool CentresFitBetter(const Candidate& candidate,
 // ...or all that they tell. (By this alone, parameters that move centres along the view gain on
 // clean recordings, too.)
 bool AllFitsBetter(const FaultFit& before, const FaultFit& fit, const DiagnosisOptions& options) {
+  const int num = static_cast<int>(fit.held_out_log_likelihoods.size());
+  if (num < options.min_samples) return false;  // of few, a standard error says little
   const PairedGain gain = GainOf(fit.held_out_log_likelihoods, before.held_out_log_likelihoods);
   return gain.sum > options.min_log_likelihood_gain && gain.sigmas > kLeastGainSigmas;
 }

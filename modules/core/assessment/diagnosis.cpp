@@ -6,6 +6,7 @@
 #include "core/assessment/fault_fit.hpp"
 #include "core/assessment/judge_outline.hpp"
 #include "core/assessment/judge_questions.hpp"
+#include "core/assessment/judge_range_offset.hpp"
 #include "core/assessment/judged_result.hpp"
 #include "core/assessment/nested_models.hpp"
 #include "core/format.hpp"
@@ -48,28 +49,6 @@ void SetOutliersAside(const std::vector<FaultParameter>& known,
     diagnosis->findings.push_back(finding);
     equations->erase(at);
   }
-}
-
-// Beyond what any lidar does: then something else is wrong that looks like it.
-void JudgeRangeOffset(const BiasEstimate& range_offset,
-                      const DiagnosisOptions& options,
-                      Diagnosis* diagnosis) {
-  constexpr double kSigmas = 2.0;
-  const double least_m = std::abs(range_offset.value_m) - kSigmas * range_offset.standard_error_m;
-  if (!range_offset.is_observable || !(least_m > options.max_range_offset_m)) return;
-  Finding finding;
-  finding.cause = "lidar range offset";
-  finding.value = 1e3 * range_offset.value_m;
-  finding.standard_error = 1e3 * range_offset.standard_error_m;
-  finding.unit = "mm";
-  finding.must_be_mended = true;
-  finding.text = Format(
-      "%.0f +- %.0f mm were taken out of the lidar's ranges, more than lidars err: squares or a "
-      "focal length given too %s look the same; check board.square_m, camera.fx_px and fy_px",
-      finding.value,
-      finding.standard_error,
-      range_offset.value_m < 0 ? "large" : "small");
-  diagnosis->findings.push_back(finding);
 }
 
 void JudgeInconsistent(int num_inconsistent, std::size_t num_used, Diagnosis* diagnosis) {
@@ -197,16 +176,12 @@ Diagnosis Diagnose(const std::vector<const BoardSample*>& samples,
   std::vector<FaultParameter> known = {kChessboardTurnX, kChessboardTurnY};
   if (range_offset.is_observable) known.push_back(kRangeOffset);
   SetOutliersAside(known, options, &equations, &diagnosis);
-  const JudgedResult result{board, camera, T_camera_lidar, covariance};
-  JudgeModels(equations, known, result, options, &diagnosis);
-  JudgeQuestions(SamplesOf(equations, samples),
-                 FitFaults(equations, known),
-                 known,
-                 result,
-                 options,
-                 &diagnosis);
-  JudgeOutline(samples, board, range_offset, options, &diagnosis);
-  JudgeRangeOffset(range_offset, options, &diagnosis);
+  const JudgedResult result{board, camera, T_camera_lidar, covariance, range_offset};
+  const FaultFit plain = FitFaults(equations, known);
+  const FaultFit models = JudgeModels(equations, known, result, options, &diagnosis);
+  JudgeQuestions(SamplesOf(equations, samples), plain, known, result, options, &diagnosis);
+  JudgeOutline(samples, board, {range_offset, RangeOffsetOf(models)}, options, &diagnosis);
+  JudgeRangeOffset(range_offset, plain, models, options, &diagnosis);
   Rank(options, &diagnosis.findings);
   JudgeInconsistent(num_inconsistent, samples.size(), &diagnosis);
   JudgePoses(samples, options, &diagnosis);

@@ -115,46 +115,69 @@ ModelMatrix Scattered(const Eigen::MatrixXd& fitted, const std::vector<int>& col
   return all;
 }
 
+double NumRows(const FaultEquation& equation, std::size_t kind) {
+  return kind == kCorner ? kIndependentCorners * equation.corners.num_rows : kRowsOfKind[kind];
+}
+
 double NumRows(const std::vector<FaultEquation>& equations, std::size_t kind) {
-  if (kind != kCorner) return kRowsOfKind[kind] * static_cast<double>(equations.size());
   double num = 0;
-  for (const FaultEquation& equation : equations)
-    num += kIndependentCorners * equation.corners.num_rows;
+  for (const FaultEquation& equation : equations) num += NumRows(equation, kind);
   return num;
 }
 
-std::array<double, kNumResidualKinds> SquaresOf(const std::vector<FaultEquation>& equations,
-                                                const ModelVector& value) {
-  std::array<double, kNumResidualKinds> squares{};
-  for (const FaultEquation& equation : equations) {
-    const Vector6d left = equation.r + equation.J * value;
-    for (int row = 0; row < 6; ++row) squares[KindOfRow(row)] += left[row] * left[row];
-    const CornerTerms& corners = equation.corners;
-    squares[kCorner] += kIndependentCorners * (corners.squares - 2 * corners.pull.dot(value) +
-                                               value.dot(corners.information * value));
-  }
+using Squares = std::array<double, kNumResidualKinds>;
+
+void AddSquares(const FaultEquation& equation, const ModelVector& value, Squares* squares) {
+  const Vector6d left = equation.r + equation.J * value;
+  for (int row = 0; row < 6; ++row) (*squares)[KindOfRow(row)] += left[row] * left[row];
+  const CornerTerms& corners = equation.corners;
+  (*squares)[kCorner] += kIndependentCorners * (corners.squares - 2 * corners.pull.dot(value) +
+                                                value.dot(corners.information * value));
+}
+
+Squares SquaresOf(const std::vector<FaultEquation>& equations, const ModelVector& value) {
+  Squares squares{};
+  for (const FaultEquation& equation : equations) AddSquares(equation, value, &squares);
   return squares;
+}
+
+double LogLikelihoodOf(double num_rows, double squares, double noise) {
+  return num_rows == 0 ? 0.0 : -num_rows * std::log(noise) - squares / (2 * noise * noise);
 }
 
 double CentreErrorM(const FaultEquation& equation, const ModelVector& value) {
   return (equation.r + equation.J * value).head<3>().norm();
 }
 
-// Infinite where the other samples leave a parameter open.
-std::vector<double> HeldOutErrorsM(const std::vector<FaultEquation>& equations,
-                                   const std::vector<int>& columns,
-                                   const NoiseLevels& noise) {
-  const NormalEquations all = SumOf(equations, columns, noise);
-  std::vector<double> errors_m;
+double LogLikelihoodOf(const FaultEquation& equation,
+                       const ModelVector& value,
+                       const NoiseLevels& noise) {
+  Squares squares{};
+  AddSquares(equation, value, &squares);
+  double sum = 0;
+  for (std::size_t kind = 0; kind < noise.size(); ++kind)
+    sum += LogLikelihoodOf(NumRows(equation, kind), squares[kind], noise[kind]);
+  return sum;
+}
+
+// What is said of each sample by the others; of one without which a parameter is open, nothing.
+void HoldOut(const std::vector<FaultEquation>& equations,
+             const std::vector<int>& columns,
+             FaultFit* fit) {
+  const NormalEquations all = SumOf(equations, columns, fit->noise);
   for (const FaultEquation& equation : equations) {
     NormalEquations others = all;
-    Add(equation, columns, noise, -1, &others);
+    Add(equation, columns, fit->noise, -1, &others);
     const auto inverse = InverseOf(others.H);
-    errors_m.push_back(
-        inverse ? CentreErrorM(equation, Scattered(Eigen::VectorXd(*inverse * others.b), columns))
-                : std::numeric_limits<double>::infinity());
+    if (!inverse) {
+      fit->held_out_errors_m.push_back(std::numeric_limits<double>::infinity());
+      fit->held_out_log_likelihoods.push_back(-std::numeric_limits<double>::infinity());
+      continue;
+    }
+    const ModelVector value = Scattered(Eigen::VectorXd(*inverse * others.b), columns);
+    fit->held_out_errors_m.push_back(CentreErrorM(equation, value));
+    fit->held_out_log_likelihoods.push_back(LogLikelihoodOf(equation, value, fit->noise));
   }
-  return errors_m;
 }
 
 }  // namespace
@@ -191,15 +214,14 @@ FaultFit FitFaults(const std::vector<FaultEquation>& equations,
       const double num_rows = NumRows(equations, kind);
       if (num_rows == 0) continue;
       fit.noise[kind] = std::max(kLeastNoise[kind], std::sqrt(fit.squares[kind] / num_rows));
-      fit.log_likelihood -= num_rows * std::log(fit.noise[kind]) +
-                            fit.squares[kind] / (2 * fit.noise[kind] * fit.noise[kind]);
+      fit.log_likelihood += LogLikelihoodOf(num_rows, fit.squares[kind], fit.noise[kind]);
     }
   }
   fit.is_usable = true;
   for (const double error_m : CentreErrorsM(equations, fit)) {
     fit.mean_error_m += error_m / num_samples;
   }
-  fit.held_out_errors_m = HeldOutErrorsM(equations, columns, fit.noise);
+  HoldOut(equations, columns, &fit);
   for (const double error_m : fit.held_out_errors_m) {
     fit.mean_held_out_error_m += error_m / num_samples;
   }

@@ -20,6 +20,8 @@ struct FaultFit {
   double mean_error_m = 0;                ///< Of the centres, in space.
   std::vector<double> held_out_errors_m;  ///< The same, each sample left out of the fit in turn.
   double mean_held_out_error_m = 0;
+  /// Log-likelihood of all that each sample tells, left out of the fit in turn.
+  std::vector<double> held_out_log_likelihoods;
 
   std::array<double, kNumResidualKinds> squares{};  ///< Sums of squares by kind.
 

@@ -77,11 +77,14 @@ OutlineErrors ErrorsOf(const std::vector<const BoardSample*>& samples,
 // explains the edges.
 OutlineErrors LeastErrorsOf(const std::vector<const BoardSample*>& samples,
                             const BoardSpec& board,
-                            const BiasEstimate& range_offset) {
-  const OutlineErrors as_seen = ErrorsOf(samples, board, 0.0);
-  if (!range_offset.is_observable) return as_seen;
-  const OutlineErrors corrected = ErrorsOf(samples, board, range_offset.value_m);
-  return std::abs(corrected.all.MeanM()) < std::abs(as_seen.all.MeanM()) ? corrected : as_seen;
+                            const std::vector<BiasEstimate>& range_offsets) {
+  OutlineErrors least = ErrorsOf(samples, board, 0.0);
+  for (const BiasEstimate& offset : range_offsets) {
+    if (!offset.is_observable) continue;
+    const OutlineErrors corrected = ErrorsOf(samples, board, offset.value_m);
+    if (std::abs(corrected.all.MeanM()) < std::abs(least.all.MeanM())) least = corrected;
+  }
+  return least;
 }
 
 bool IsOneSideWrong(const OutlineErrors& errors, const DiagnosisOptions& options) {
@@ -109,10 +112,10 @@ Finding SideFinding(const OutlineErrors& errors, const BoardSpec& board) {
 
 void JudgeOutline(const std::vector<const BoardSample*>& samples,
                   const BoardSpec& board,
-                  const BiasEstimate& range_offset,
+                  const std::vector<BiasEstimate>& range_offsets,
                   const DiagnosisOptions& options,
                   Diagnosis* diagnosis) {
-  const OutlineErrors errors = LeastErrorsOf(samples, board, range_offset);
+  const OutlineErrors errors = LeastErrorsOf(samples, board, range_offsets);
   constexpr int kLeastEdges = 5;  // on each side: fewer may all be off alike
   if (errors.widths.num < kLeastEdges || errors.heights.num < kLeastEdges) return;
   if (IsOneSideWrong(errors, options)) {

@@ -11,10 +11,10 @@ namespace voqcal {
 
 /// Compares the outline that was given with its edges as the lidar measures them freely: all of
 /// them, and the width against the height. Appends what differs to the findings.
-/// @param range_offset  that the result takes out of the lidar's ranges.
+/// @param range_offsets  that the lidar's ranges may have, as the result and the models say.
 void JudgeOutline(const std::vector<const BoardSample*>& samples,
                   const BoardSpec& board,
-                  const BiasEstimate& range_offset,
+                  const std::vector<BiasEstimate>& range_offsets,
                   const DiagnosisOptions& options,
                   Diagnosis* diagnosis);
 

@@ -7,6 +7,7 @@
 #include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/geometry/rigid.hpp"
+#include "core/likelihood/lidar_bias.hpp"
 
 namespace voqcal {
 
@@ -15,7 +16,8 @@ struct JudgedResult {
   BoardSpec board;
   CameraModel camera;
   Eigen::Isometry3d T_camera_lidar;
-  Matrix6d covariance;  ///< Of [rotation_rad; translation_m], left (camera) side.
+  Matrix6d covariance;        ///< Of [rotation_rad; translation_m], left (camera) side.
+  BiasEstimate range_offset;  ///< Taken out of the lidar's ranges, if it is observable.
 };
 
 /// Calibrations of one camera differ by less in where its rays go: 0.7 degrees, 12 px of a focal

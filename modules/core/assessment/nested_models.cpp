@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
+#include "core/assessment/judge_range_offset.hpp"
 #include "core/assessment/suspects.hpp"
 #include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
@@ -31,8 +33,18 @@ bool HalvesTheError(const FaultFit& before, const FaultFit& fit) {
   return fit.mean_held_out_error_m < 0.5 * before.mean_held_out_error_m;
 }
 
-// The result is wrong by a cause that moves it beyond its interval; by one that the rotation makes
-// good, only if lidar points land elsewhere in the image, too, or if it turns by more than
+// As far as a cause may move the result, which is as uncertain as its own size.
+double MostIntervals(const Suspect& suspect,
+                     const FaultFit& fit,
+                     const Vector6d& move,
+                     const Matrix6d& covariance) {
+  constexpr double kSigmas = 2.0;
+  const double most = 1 + kSigmas * suspect.LengthError(fit) / suspect.Length(fit);
+  return most * IntervalsOf(move, covariance);
+}
+
+// The result is wrong by a cause that may move it beyond its interval; by one that the rotation
+// makes good, only if lidar points land elsewhere in the image, too, or if it turns by more than
 // calibrations of one camera differ by.
 void WeighMove(const Suspect& suspect,
                const Vector6d& move,
@@ -40,7 +52,7 @@ void WeighMove(const Suspect& suspect,
                const JudgedResult& result,
                Finding* finding) {
   finding->moved_intervals = IntervalsOf(move, result.covariance);
-  finding->must_be_mended = finding->moved_intervals > 1;
+  finding->must_be_mended = MostIntervals(suspect, fit, move, result.covariance) > 1;
   finding->text += MoveText(move, result.covariance);
   if (!suspect.trades_rotation || !finding->must_be_mended) return;
   const Landing landing = LandingOf(CameraWith(fit.Faults(), result.camera), move, result);
@@ -80,18 +92,53 @@ Finding MakeFinding(const Candidate& candidate,
   return finding;
 }
 
-// By how many of its standard errors the mean error of poses held out falls: of pairs, as a pose
-// that is far off is so with both.
-double GainSigmas(const FaultFit& before, const FaultFit& fit) {
-  const auto num = static_cast<double>(fit.held_out_errors_m.size());
+/// How much larger numbers are than others of the same poses: of pairs, as a pose that is far off
+/// is so with both.
+struct PairedGain {
   double sum = 0;
+  double sigmas = 0;  ///< The sum by its standard error.
+};
+
+PairedGain GainOf(const std::vector<double>& larger, const std::vector<double>& smaller) {
+  PairedGain gain;
   double sum2 = 0;
-  for (std::size_t i = 0; i < fit.held_out_errors_m.size(); ++i) {
-    const double gain = before.held_out_errors_m[i] - fit.held_out_errors_m[i];
-    sum += gain;
-    sum2 += gain * gain;
+  for (std::size_t i = 0; i < larger.size(); ++i) {
+    const double difference = larger[i] - smaller[i];
+    gain.sum += difference;
+    sum2 += difference * difference;
   }
-  return sum / std::sqrt(std::max(sum2 - sum * sum / num, 0.0));
+  const double variance = sum2 - gain.sum * gain.sum / static_cast<double>(larger.size());
+  gain.sigmas = gain.sum / std::sqrt(std::max(variance, 0.0));
+  return gain;
+}
+
+constexpr double kLeastGainSigmas = 2.5;
+
+// Whether poses held out fit better: their centres...
+bool CentresFitBetter(const Candidate& candidate,
+                      const FaultFit& before,
+                      const DiagnosisOptions& options) {
+  // What no model has (edges that beams widen, a plate that is not quite flat) leaves errors that
+  // one parameter or another takes up in part, far beyond what white noise would: so the error of
+  // poses held out must fall, and for so many of them that it is no chance.
+  constexpr double kLeastFall = 0.1;
+  // ...or normals and corners gain the more, the less it falls: six times the least that is worth a
+  // word with a fall of a tenth.
+  constexpr double kLeastGainByFall = 0.6;
+  const FaultFit& fit = candidate.fit;
+  const double fall = 1 - fit.mean_held_out_error_m / before.mean_held_out_error_m;
+  if (!(fall > kLeastFall)) return false;
+  return GainOf(before.held_out_errors_m, fit.held_out_errors_m).sigmas > kLeastGainSigmas ||
+         fall * candidate.gain > kLeastGainByFall * options.min_log_likelihood_gain;
+}
+
+// ...or all that they tell. (By this alone, parameters that move centres along the view gain on
+// clean recordings, too.)
+bool AllFitsBetter(const FaultFit& before, const FaultFit& fit, const DiagnosisOptions& options) {
+  const int num = static_cast<int>(fit.held_out_log_likelihoods.size());
+  if (num < options.min_samples) return false;  // of few, a standard error says little
+  const PairedGain gain = GainOf(fit.held_out_log_likelihoods, before.held_out_log_likelihoods);
+  return gain.sum > options.min_log_likelihood_gain && gain.sigmas > kLeastGainSigmas;
 }
 
 // Beyond chance, also for samples that it was not fitted to, and of consequence: it moves the
@@ -100,23 +147,16 @@ bool IsWorthAWord(const Candidate& candidate,
                   const FaultFit& before,
                   const Matrix6d& covariance,
                   const DiagnosisOptions& options) {
-  // What no model has (edges that beams widen, a plate that is not quite flat) leaves errors that
-  // one parameter or another takes up in part, far beyond what white noise would: so the error of
-  // poses held out must fall, and for so many of them that it is no chance.
-  constexpr double kLeastFall = 0.1;
-  constexpr double kLeastGainSigmas = 2.5;
-  // ...or normals and corners gain the more, the less it falls: six times the least that is worth a
-  // word with a fall of a tenth.
-  constexpr double kLeastGainByFall = 0.6;
   const FaultFit& fit = candidate.fit;
-  const double fall = 1 - fit.mean_held_out_error_m / before.mean_held_out_error_m;
-  return candidate.gain > options.min_log_likelihood_gain &&
-         candidate.suspect.Length(fit) > 3 * candidate.suspect.LengthError(fit) &&
-         fall > kLeastFall &&
-         (GainSigmas(before, fit) > kLeastGainSigmas ||
-          fall * candidate.gain > kLeastGainByFall * options.min_log_likelihood_gain) &&
-         (HalvesTheError(before, fit) ||
-          IntervalsOf(MoveBetween(before, fit), covariance) > options.min_moved_intervals);
+  const Suspect& suspect = candidate.suspect;
+  if (!(candidate.gain > options.min_log_likelihood_gain)) return false;
+  if (!(suspect.Length(fit) > 3 * suspect.LengthError(fit))) return false;
+  // What the rotation makes good leaves the centres where they are: normals and corners show it.
+  const bool is_held_out_better = CentresFitBetter(candidate, before, options) ||
+                                  (suspect.trades_rotation && AllFitsBetter(before, fit, options));
+  return is_held_out_better && (HalvesTheError(before, fit) ||
+                                MostIntervals(suspect, fit, MoveBetween(before, fit), covariance) >
+                                    options.min_moved_intervals);
 }
 
 bool Contains(const std::vector<std::string>& words, const std::string& word) {
@@ -256,6 +296,26 @@ const Candidate* BestOf(const Round& round,
   return best;
 }
 
+// An offset that no lidar has comes from elsewhere, whatever that is. So the suspects that leave a
+// possible one are compared with a broken lidar, not with nothing: the likeliest by the samples and
+// by what is known of lidars is a finding, also if the result, which has the offset instead, hardly
+// moves.
+std::optional<Candidate> WhatTheOffsetIs(const Round& round,
+                                         const FaultFit& now,
+                                         const JudgedResult& result,
+                                         const DiagnosisOptions& options) {
+  if (!IsBeyondLidars(result.range_offset, options)) return {};
+  if (!IsBeyondLidars(RangeOffsetOf(now), options)) return {};
+  std::optional<Candidate> best;
+  const double prior_now = LogPriorOfRangeOffset(now.Value(kRangeOffset), options);
+  for (Candidate candidate : round.candidates) {
+    if (IsBeyondLidars(RangeOffsetOf(candidate.fit), options)) continue;
+    candidate.gain += LogPriorOfRangeOffset(candidate.fit.Value(kRangeOffset), options) - prior_now;
+    if (candidate.gain > (best ? best->gain : options.min_log_likelihood_gain)) best = candidate;
+  }
+  return best;
+}
+
 void Remove(const std::vector<FaultParameter>& faults, std::vector<Suspect>* suspects) {
   suspects->erase(std::remove_if(suspects->begin(),
                                  suspects->end(),
@@ -265,27 +325,37 @@ void Remove(const std::vector<FaultParameter>& faults, std::vector<Suspect>* sus
 
 }  // namespace
 
-void JudgeModels(const std::vector<FaultEquation>& equations,
-                 const std::vector<FaultParameter>& known,
-                 const JudgedResult& result,
-                 const DiagnosisOptions& options,
-                 Diagnosis* diagnosis) {
+FaultFit JudgeModels(const std::vector<FaultEquation>& equations,
+                     const std::vector<FaultParameter>& known,
+                     const JudgedResult& result,
+                     const DiagnosisOptions& options,
+                     Diagnosis* diagnosis) {
   FaultFit now = FitFaults(equations, known);
   if (!now.is_usable) {
     diagnosis->not_judged.push_back("what was given: the samples leave the extrinsic itself open");
-    return;
+    return now;
   }
   std::vector<FaultParameter> fitted = known;
   std::vector<Suspect> suspects = SuspectsOf(result.board, result.camera);
   for (const FaultParameter fault : known) Remove({fault}, &suspects);
   Round round = TryEach(equations, suspects, fitted, now);
-  while (const Candidate* best = BestOf(round, now, result.covariance, options)) {
-    diagnosis->findings.push_back(MakeFinding(*best, now, result));
-    now = best->fit;
-    const std::vector<FaultParameter> added = best->suspect.faults;
+  const auto take = [&](const Candidate& candidate) {
+    diagnosis->findings.push_back(MakeFinding(candidate, now, result));
+    now = candidate.fit;
+    const std::vector<FaultParameter>& added = candidate.suspect.faults;
     fitted.insert(fitted.end(), added.begin(), added.end());
     Remove(added, &suspects);
     round = TryEach(equations, suspects, fitted, now);
+  };
+  while (const Candidate* best = BestOf(round, now, result.covariance, options)) take(*best);
+  if (const auto cause = WhatTheOffsetIs(round, now, result, options)) {
+    take(*cause);
+    Finding& finding = diagnosis->findings.back();
+    finding.must_be_mended = true;
+    finding.text += Format(
+        "; instead of it %.0f mm were taken out of the lidar's ranges, more than "
+        "lidars err",
+        kMmPerM * result.range_offset.value_m);
   }
   if (ExplainTheTurn(equations, fitted, result, options, diagnosis)) {
     Remove(PrincipalPoint(result.camera).faults, &suspects);
@@ -293,6 +363,7 @@ void JudgeModels(const std::vector<FaultEquation>& equations,
   }
   SayWhatIsOpen(round.open_groups, diagnosis);
   SayWhatCouldHide(round, result.covariance, diagnosis);
+  return now;
 }
 
 }  // namespace voqcal

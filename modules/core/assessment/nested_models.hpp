@@ -12,10 +12,11 @@ namespace voqcal {
 /// most, again and again, until none is worth a word. Appends what was added to the findings, and
 /// what the samples leave open, or what could hide in them, to what was not judged.
 /// @param known  faults that the result allows for: they are part of every fit, and no finding.
-void JudgeModels(const std::vector<FaultEquation>& equations,
-                 const std::vector<FaultParameter>& known,
-                 const JudgedResult& result,
-                 const DiagnosisOptions& options,
-                 Diagnosis* diagnosis);
+/// @return the fit with all that was found, the principal point aside; not usable if none is.
+FaultFit JudgeModels(const std::vector<FaultEquation>& equations,
+                     const std::vector<FaultParameter>& known,
+                     const JudgedResult& result,
+                     const DiagnosisOptions& options,
+                     Diagnosis* diagnosis);
 
 }  // namespace voqcal

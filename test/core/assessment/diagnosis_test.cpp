@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/assessment/fault_fit.hpp"
 #include "core/camera_detection/planar_pose.hpp"
 #include "core/estimation/refine.hpp"
 #include "core/geometry/rigid.hpp"
@@ -63,6 +62,9 @@ class Session {
       BoardPose& pose = sample.lidar.pose;
       pose.centre_m *= 1 + offset_m / pose.centre_m.norm();
       for (Eigen::Vector3d& corner : pose.corners_m) corner *= 1 + offset_m / corner.norm();
+      for (double& length_m : sample.lidar.edge_lengths_m) {
+        length_m *= 1 + offset_m / pose.centre_m.norm();
+      }
     }
   }
   std::vector<BoardSample>& samples() { return samples_; }
@@ -171,26 +173,31 @@ TEST(Diagnose, FindsAWrongPrincipalPoint) {
   EXPECT_NEAR(finding.value, 67, 3 * finding.standard_error + 2);
 }
 
-TEST(FitFaults, FindsATurnOfAllChessboards) {
-  constexpr double kTurnRad = 0.015;  // about the camera's y
-  std::vector<BoardSample> samples = test::SynthesizeSamples(Session::Noisy());
-  const Eigen::Matrix3d turn = ExpSO3({0.0, kTurnRad, 0.0});
-  for (BoardSample& sample : samples) {
-    BoardPose& pose = sample.camera.pose;
-    pose.normal = turn * pose.normal;
-    for (Eigen::Vector3d& corner : pose.corners_m) {
-      corner = pose.centre_m + turn * (corner - pose.centre_m);
-    }
-  }
-  const FaultFit fit = FitFaults(
-      MakeFaultEquations(
-          test::Pointers(samples), test::TestBoard(), test::TestCamera(), test::TestExtrinsic()),
-      {kChessboardTurnX, kChessboardTurnY});
-  ASSERT_TRUE(fit.is_usable);
-  // They truly face as before.
-  EXPECT_NEAR(fit.Value(kChessboardTurnX), 0.0, 3 * fit.StandardError(kChessboardTurnX));
-  EXPECT_NEAR(fit.Value(kChessboardTurnY), -kTurnRad, 3 * fit.StandardError(kChessboardTurnY));
-  EXPECT_LT(fit.StandardError(kChessboardTurnY), 0.1 * kTurnRad);
+// The rotation makes it good: where the centres are seems to be right, and normals tell.
+TEST(Diagnose, FindsAPrincipalPointThatTheCentresDoNotShow) {
+  Session session;
+  session.given_camera.cx_px -= 12;
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "principal point");
+  const Finding& finding = diagnosis.findings[0];
+  EXPECT_NEAR(finding.value, 12, 3 * finding.standard_error + 2);
+  EXPECT_GT(finding.held_out_after_mm, 0.9 * finding.held_out_before_mm);
+}
+
+TEST(Diagnose, WhatMayMoveTheResultBeyondItsIntervalMustBeMended) {
+  const auto with_covariance = [](double scale) {
+    Session session;
+    session.covariance_scale = scale;
+    session.given_camera.fx_px *= 1.02;
+    session.given_camera.fy_px *= 1.02;
+    return session.Run();
+  };
+  const double moved = with_covariance(1.0).findings.at(0).moved_intervals;
+  const Diagnosis nearly = with_covariance(std::pow(moved / 0.97, 2));
+  ASSERT_EQ(FirstCause(nearly), "focal length");
+  EXPECT_NEAR(nearly.findings[0].moved_intervals, 0.97, 1e-3);
+  EXPECT_TRUE(nearly.findings[0].must_be_mended);
+  EXPECT_EQ(FirstCause(with_covariance(std::pow(moved / 0.5, 2))), "none");
 }
 
 TEST(Diagnose, FindsSquaresThatWereMisMeasured) {
@@ -287,6 +294,43 @@ TEST(Diagnose, AnOffsetThatNoLidarHasIsAFinding) {
   EXPECT_THAT(diagnosis.findings[0].text, HasSubstr("too large look the same"));
   session.range_offset.standard_error_m = 0.015;  // may be 20 mm
   EXPECT_THAT(session.Run().findings, IsEmpty());
+}
+
+// The result hardly moves, as it has the offset instead of the squares.
+TEST(Diagnose, AnOffsetThatNoLidarHasIsThatOfWrongSquares) {
+  Session session;
+  session.covariance_scale = 1e3;
+  session.given_board.square_m *= 1.02;
+  session.range_offset = {-0.06, 0.004, true};
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_EQ(FirstCause(diagnosis), "board's squares");
+  EXPECT_NEAR(diagnosis.findings[0].value, -1.96, 3 * diagnosis.findings[0].standard_error + 0.1);
+  EXPECT_TRUE(diagnosis.findings[0].must_be_mended);
+  EXPECT_THAT(diagnosis.findings[0].text, HasSubstr("-60 mm were taken out"));
+  EXPECT_THAT(diagnosis.findings, SizeIs(1));  // and that is the offset
+}
+
+// With the result's prior it is less than half of what the samples say.
+TEST(Diagnose, RangesOfABrokenLidarAreNeitherWrongSquaresNorAWrongOutline) {
+  Session session;
+  session.covariance_scale = 1e3;
+  session.OffsetRanges(0.2);
+  session.range_offset = {0.09, 0.006, true};
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_THAT(diagnosis.findings, SizeIs(1));
+  EXPECT_EQ(diagnosis.findings[0].cause, "lidar range offset");
+}
+
+// Squares that are nearly right explain a little of it, and are not its cause.
+TEST(Diagnose, AnOffsetThatSquaresExplainInPartIsTheLidars) {
+  Session session;
+  session.covariance_scale = 1e3;
+  session.OffsetRanges(0.035);
+  session.given_board.square_m *= 0.996;
+  session.range_offset = {0.04, 0.004, true};
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_THAT(diagnosis.findings, SizeIs(1));
+  EXPECT_EQ(diagnosis.findings[0].cause, "lidar range offset");
 }
 
 TEST(Diagnose, SaysWhatItCannotJudgeWithoutCorners) {

@@ -276,10 +276,14 @@ TEST_F(BadInput, OutputThatCannotBeWrittenIsNamedWithTheCause) {
   }
 }
 
-TEST_F(BadInput, CheckRigPrintsARigFileThatItTakes) {
+TEST_F(BadInput, CheckRigPrintsARigFileThatItTakesOnceTheCameraIsGiven) {
   const test::Outcome printed = test::Run({test::Program("check_rig"), "--print-defaults"});
   EXPECT_EQ(printed.status, 0) << printed.err;
   const std::string rig = folder_.Write("default.yaml", printed.out);
+  const test::Outcome unchanged = test::Run({test::Program("check_rig"), rig});
+  EXPECT_EQ(unchanged.status, 3);
+  EXPECT_THAT(unchanged.err, HasSubstr("camera: is the example that check_rig --print-defaults"));
+  folder_.Write("default.yaml", test::Replaced(printed.out, "fx_px: 750 ", "fx_px: 752.5 "));
   const test::Outcome outcome = test::Run({test::Program("check_rig"), rig});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
 }

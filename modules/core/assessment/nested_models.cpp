@@ -316,6 +316,18 @@ std::optional<Candidate> WhatTheOffsetIs(const Round& round,
   return best;
 }
 
+// Whether it was worth a word also before anything else was found.
+bool StandsAlone(const Suspect& suspect,
+                 const Round& first,
+                 const FaultFit& plain,
+                 const JudgedResult& result,
+                 const DiagnosisOptions& options) {
+  return std::any_of(first.candidates.begin(), first.candidates.end(), [&](const Candidate& each) {
+    return each.suspect.faults == suspect.faults &&
+           IsWorthAWord(each, plain, result.covariance, options);
+  });
+}
+
 void Remove(const std::vector<FaultParameter>& faults, std::vector<Suspect>* suspects) {
   suspects->erase(std::remove_if(suspects->begin(),
                                  suspects->end(),
@@ -339,8 +351,17 @@ FaultFit JudgeModels(const std::vector<FaultEquation>& equations,
   std::vector<Suspect> suspects = SuspectsOf(result.board, result.camera);
   for (const FaultParameter fault : known) Remove({fault}, &suspects);
   Round round = TryEach(equations, suspects, fitted, now);
+  const Round first = round;
+  const FaultFit plain = now;
+  const std::size_t begin = diagnosis->findings.size();
   const auto take = [&](const Candidate& candidate) {
     diagnosis->findings.push_back(MakeFinding(candidate, now, result));
+    // What is only seen once others are mended asks for mending these.
+    if (diagnosis->findings.back().must_be_mended &&
+        !StandsAlone(candidate.suspect, first, plain, result, options)) {
+      for (std::size_t i = begin; i < diagnosis->findings.size(); ++i)
+        diagnosis->findings[i].must_be_mended = true;
+    }
     now = candidate.fit;
     const std::vector<FaultParameter>& added = candidate.suspect.faults;
     fitted.insert(fitted.end(), added.begin(), added.end());

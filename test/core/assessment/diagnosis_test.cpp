@@ -200,6 +200,18 @@ TEST(Diagnose, WhatMayMoveTheResultBeyondItsIntervalMustBeMended) {
   EXPECT_EQ(FirstCause(with_covariance(std::pow(moved / 0.5, 2))), "none");
 }
 
+// Alone, the squares are not worth a word, and the principal point would be an advice.
+TEST(Diagnose, WhatIsSeenOnlyBesideAnotherFaultComesAfterIt) {
+  Session session;
+  session.given_camera.cy_px -= 13;
+  session.given_board.square_m *= 1.0064;
+  const Diagnosis diagnosis = session.Run();
+  ASSERT_THAT(diagnosis.findings, SizeIs(2));
+  EXPECT_EQ(diagnosis.findings[0].cause, "principal point");
+  EXPECT_TRUE(diagnosis.findings[0].must_be_mended);
+  EXPECT_EQ(diagnosis.findings[1].cause, "board's squares");
+}
+
 TEST(Diagnose, FindsSquaresThatWereMisMeasured) {
   Session session;
   session.given_board.square_m *= 1.02;

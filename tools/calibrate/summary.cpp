@@ -131,9 +131,14 @@ std::string SceneLines(const CalibrationResult& result) {
   return text + "; " + check.reason + "\n";
 }
 
-std::string DiagnosisLines(const Diagnosis& diagnosis) {
+std::string DiagnosisLines(const CalibrationResult& result) {
+  const Diagnosis& diagnosis = result.diagnosis;
   std::string text = "what is likely wrong\n";
-  if (diagnosis.findings.empty()) text += "  nothing that would explain the errors better\n";
+  if (diagnosis.findings.empty()) {
+    text += result.lens_correction.IsUsable()
+                ? "  nothing but the lens, above, would explain the errors better\n"
+                : "  nothing that would explain the errors better\n";
+  }
   for (const Finding& finding : diagnosis.findings) {
     text += "  " + finding.cause + ": " + finding.text + "\n";
   }
@@ -173,7 +178,7 @@ std::string Summary(const CalibrationResult& result) {
   text += LensLines(result);
   text += "lidar's boards  sum of the edges' errors (e_dim) " + Tenths(result.e_dim_mm) +
           " mm, median of the samples\n";
-  text += SceneLines(result) + DiagnosisLines(result.diagnosis);
+  text += SceneLines(result) + DiagnosisLines(result);
   if (!result.rejected.empty()) text += "left out\n";
   for (const RejectedSample& rejected : result.rejected) {
     text += "  sample " + std::to_string(rejected.id) + ": " + rejected.reason + "\n";

@@ -150,6 +150,7 @@ CalibrationResult AssessorNode::Result() {
                                           rig_.Task()),
                            {}};
   result.made_from = {samples_->log_sha256, rig_.sha256, VOQCAL_VERSION};
+  result.camera = rig_.camera;
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include "files/transform_yaml.hpp"
 #include "files/yaml_reader.hpp"
 #include "result/assessment_yaml.hpp"
+#include "result/camera_yaml.hpp"
 #include "result/lens_correction_yaml.hpp"
 #include "result/lidar_bias_yaml.hpp"
 #include "result/verdict_yaml.hpp"
@@ -119,8 +120,9 @@ std::string ToYaml(const CalibrationResult& result) {
          "# of T_camera_lidar: rotation_rad, then translation_m, perturbed on the left (camera) "
          "side\n"
          "covariance:\n" +
-         covariance + VerdictYaml(VerdictOf(result)) + Methods(result) + Averaged(result.averaged) +
-         LidarBiasYaml(result.lidar_bias) +
+         covariance + "camera:  # the rig file's, with which T_camera_lidar goes\n" +
+         CameraYaml(result.camera, "  ") + VerdictYaml(VerdictOf(result)) + Methods(result) +
+         Averaged(result.averaged) + LidarBiasYaml(result.lidar_bias) +
          "# all chessboards are seen turned by so much about the camera's x and y, against the "
          "rays\n"
          "# to their centres, as by a principal point that is given wrongly\n"

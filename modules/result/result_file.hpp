@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/calibration/calibration.hpp"
+#include "core/camera/camera_model.hpp"
 
 namespace voqcal {
 
@@ -26,6 +27,7 @@ struct MadeFrom {
 /// Everything that extrinsic.yaml says.
 struct CalibrationResult : Calibration {
   MadeFrom made_from;
+  CameraModel camera;  ///< The rig file's, with which T_camera_lidar goes.
 };
 
 /// The text of extrinsic.yaml. The same result gives the same bytes; numbers read back exactly.

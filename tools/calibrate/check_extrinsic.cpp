@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include <spdlog/spdlog.h>
+
+#include "calibrate/lens_of_result.hpp"
 #include "common/tool_main.hpp"
 #include "core/scene/scene_check.hpp"
 #include "core/units.hpp"
@@ -108,6 +111,8 @@ void Print(const SceneCheck& check) {
 int Check(const CheckArgs& args) {
   const Rig rig = LoadRig(args.rig);
   const Eigen::Isometry3d T_camera_lidar = ReadExtrinsic(args.extrinsic);
+  const std::string lens_doubt = LensDoubt(args.extrinsic, rig.camera);
+  if (!lens_doubt.empty()) spdlog::warn("{}", lens_doubt);
   const SceneCheck check =
       CheckScene(ViewsOf(rig, args), rig.camera, T_camera_lidar, rig.scene_check);
   Print(check);

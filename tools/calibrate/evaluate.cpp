@@ -10,8 +10,11 @@
 #include <string>
 #include <vector>
 
+#include <spdlog/spdlog.h>
+
 #include "calibrate/advice.hpp"
 #include "calibrate/collect.hpp"
+#include "calibrate/lens_of_result.hpp"
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
@@ -86,6 +89,8 @@ bool IsMadeFrom(const std::filesystem::path& samples_log, const std::filesystem:
 void Evaluate(const EvaluateArgs& args) {
   const Rig rig = LoadRig(args.rig);
   const Eigen::Isometry3d T_camera_lidar = ReadExtrinsic(args.extrinsic);
+  const std::string lens_doubt = LensDoubt(args.extrinsic, rig.camera);
+  if (!lens_doubt.empty()) spdlog::warn("{}", lens_doubt);
   const ScratchFolder scratch(std::filesystem::temp_directory_path() / "voqcal-evaluate");
   const auto run = CollectSamples(rig, args.input, scratch.path());
   run->Finish(/*is_collecting_only=*/true);

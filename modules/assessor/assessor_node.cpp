@@ -143,15 +143,13 @@ void AssessorNode::UpdateAssessment() {
 }
 
 CalibrationResult AssessorNode::Result() {
-  CalibrationResult result{voqcal::Assess(ChosenOf(*samples_, *averaged_),
-                                          FromMessage(*averaged_),
-                                          FromMessage(*refined_),
-                                          scene_views_,
-                                          rig_.Task()),
-                           {}};
-  result.made_from = {samples_->log_sha256, rig_.sha256, VOQCAL_VERSION};
-  result.camera = rig_.camera;
-  return result;
+  return {voqcal::Assess(ChosenOf(*samples_, *averaged_),
+                         FromMessage(*averaged_),
+                         FromMessage(*refined_),
+                         scene_views_,
+                         rig_.Task()),
+          {samples_->log_sha256, rig_.sha256, VOQCAL_VERSION},
+          rig_.camera};
 }
 
 }  // namespace voqcal

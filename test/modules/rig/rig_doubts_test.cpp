@@ -155,7 +155,8 @@ TEST(CameraDoubts, NamesWhyThePrincipalPointIsOffTheMiddle) {
   camera = UsualCamera();
   camera.cx_px /= 2;
   camera.cy_px /= 2;
-  EXPECT_THAT(CameraDoubts(camera), ElementsAre(HasSubstr("an image of about 635 x 375 px?")));
+  EXPECT_THAT(CameraDoubts(camera),
+              ElementsAre(HasSubstr("an image of about 635 x 375 px. Look at an image")));
   camera = UsualCamera();
   camera.width_px = 640;
   camera.cx_px = 3200;

@@ -56,9 +56,10 @@ class UdpPackets : public PacketSource {
         inet_pton(AF_INET, address.c_str(), &local.sin_addr) == 1 &&
         bind(socket_.get(), reinterpret_cast<sockaddr*>(&local), sizeof(local)) == 0;
     if (!is_bound) {
-      const int error = errno;
-      throw std::runtime_error("cannot receive on UDP " + name_ + ": " + std::strerror(error) +
-                               (error == EADDRNOTAVAIL ? ": " + doubt_ : ""));
+      const bool has_own_words = errno == EADDRNOTAVAIL && !doubt_.empty();
+      const std::string why = std::strerror(errno);
+      throw std::runtime_error("cannot receive on UDP " + name_ + ": " + why +
+                               (has_own_words ? ": " + doubt_ : ""));
     }
   }
 

@@ -41,8 +41,8 @@ std::string AddressDoubt(const std::string& address) {
     return "only what this host itself sends arrives there: for a lidar on the network give this "
            "host's own address (0.0.0.0: of every network card)";
   }
-  const bool is_of_many = IN_MULTICAST(ntohl(parsed.s_addr)) || parsed.s_addr == INADDR_BROADCAST;
-  if (parsed.s_addr == INADDR_ANY || is_of_many || IsOfThisHost(parsed.s_addr)) return "";
+  const bool is_of_all = parsed.s_addr == INADDR_ANY || parsed.s_addr == INADDR_BROADCAST;
+  if (is_of_all || IsOfThisHost(parsed.s_addr)) return "";
   return "no network card of this host has this address: give this host's own, not the lidar's "
          "(0.0.0.0: of every network card)";
 }

@@ -45,14 +45,15 @@ TEST_F(LensDoubtTest, SaysThatImagesAreOfAnotherSize) {
   EXPECT_THAT(DoubtOf(camera), HasSubstr("was made with images of "));
 }
 
-TEST_F(LensDoubtTest, KnowsNothingOfFilesWithoutACamera) {
+TEST_F(LensDoubtTest, KnowsNothingOfOtherProgramsFiles) {
   folder_.Write("extrinsic.yaml",
-                "T_camera_lidar: {quaternion_xyzw: [0, 0, 0, 1], translation_m: [0, 0, 0]}\n");
+                "T_camera_lidar: {quaternion_xyzw: [0, 0, 0, 1], translation_m: [0, 0, 0]}\n"
+                "camera: front_left\n");
   EXPECT_EQ(DoubtOf(test::TestCamera()), "");
 }
 
 TEST_F(LensDoubtTest, NamesACameraThatIsNone) {
-  folder_.Write("extrinsic.yaml", "camera: {lens_model: brown}\n");
+  folder_.Write("extrinsic.yaml", "camera: {lens_model: brown}\nmade_from: {}\n");
   EXPECT_THAT(test::ErrorOf([&] { DoubtOf(test::TestCamera()); }),
               HasSubstr("extrinsic.yaml:1: camera."));
 }

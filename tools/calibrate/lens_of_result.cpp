@@ -20,7 +20,8 @@ std::optional<CameraModel> CameraOf(const std::filesystem::path& extrinsic) {
   const std::filesystem::path file = ResultFileAt(extrinsic);
   YamlDocument document(file.string(), ReadWholeFile(file));
   OptionSection top(&document);
-  if (!top.Has("camera")) return std::nullopt;  // another program's, or of an earlier version
+  const bool is_ours = top.Has("made_from");
+  if (!is_ours || !top.Has("camera")) return std::nullopt;  // or of an earlier version
   CameraModel camera;
   std::optional<Eigen::Isometry3d> no_guess;
   ReadCamera(&top, &camera, &no_guess, nullptr);

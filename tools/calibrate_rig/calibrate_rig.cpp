@@ -166,12 +166,11 @@ void RequireOnePiece(const CalibrateRigArgs& args,
   if (result.network.IsUsable()) return;
   const bool has_cause = std::any_of(
       advice.begin(), advice.end(), [](const std::string& each) { return !each.empty(); });
-  std::string text =
-      args.Given() + ": no calibration of the rig: " +
-      (has_cause ? "mend what was said of its pairs, above" : result.network.problem);
+  std::string text = args.Given() + ": no calibration of the rig: " + result.network.problem;
   for (const CalibratedPair& pair : result.pairs) {
-    if (!has_cause && !pair.problem.empty()) text += "\n" + pair.Name() + ": " + pair.problem;
+    if (!pair.problem.empty()) text += "\n" + pair.Name() + ": " + pair.problem;
   }
+  if (has_cause) text += "\nfirst mend what was said above of pairs whose frames nearly all fail";
   const std::filesystem::path earlier = args.out / kRigResultName;
   if (std::filesystem::exists(earlier)) text += "\n" + earlier.string() + " is of an earlier run";
   throw std::runtime_error(text);

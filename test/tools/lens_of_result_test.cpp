@@ -35,7 +35,7 @@ TEST_F(LensDoubtTest, SaysHowFarAnotherLensIsFromIt) {
   camera.cx_px += 0.01 * camera.fx_px;  // 10 mrad in the middle of the image
   EXPECT_THAT(DoubtOf(camera),
               AllOf(HasSubstr("extrinsic.yaml was made with another lens than the rig file's"),
-                    HasSubstr("rays differ by up to 0."),
+                    HasSubstr("rays differ by up to 1.33 deg"),
                     HasSubstr("An extrinsic goes with its lens")));
 }
 

@@ -5,6 +5,7 @@ set -euo pipefail
 build=$1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
+trap 'echo "$0:$LINENO: exit status $?: $BASH_COMMAND" >&2; tail -n 5 live/*.txt live/*.log >&2' ERR
 unset VOQCAL_BIN
 cmake --install "$build" --prefix "$folder/voqcal" >/dev/null
 cd "$folder"

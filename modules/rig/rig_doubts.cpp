@@ -125,8 +125,7 @@ std::string WhyOffCentre(const CameraModel& camera) {
   if (scale_x > 0 && std::abs(scale_y / scale_x - 1) < 0.1) {
     return Format(
         "they fit an image of about %.0f x %.0f px. Look at an image: if it has that size, "
-        "width_px "
-        "and height_px are wrong; else scale all four intrinsics to this size",
+        "width_px and height_px are wrong; else scale all four intrinsics to this size",
         2 * camera.cx_px,
         2 * camera.cy_px);
   }
@@ -193,8 +192,7 @@ void DoubtExample(const CameraModel& camera, Lines* lines) {
   }
   lines->push_back(
       "camera: is the example that check_rig --print-defaults gives: give your camera's numbers, "
-      "or "
-      "leave fx_px and the rest out and have them found by calibrate_lens");
+      "or leave fx_px and the rest out and have them found by calibrate_lens");
 }
 
 void DoubtGuess(const Rig& rig, Lines* lines) {

@@ -112,6 +112,13 @@ PairedGain GainOf(const std::vector<double>& larger, const std::vector<double>& 
   return gain;
 }
 
+// Whether it is far from none by its own standard error.
+bool IsThere(const Candidate& candidate) {
+  constexpr double kSigmas = 3.0;
+  return candidate.suspect.Length(candidate.fit) >
+         kSigmas * candidate.suspect.LengthError(candidate.fit);
+}
+
 constexpr double kLeastGainSigmas = 2.5;
 
 // Whether poses held out fit better: their centres...
@@ -150,7 +157,7 @@ bool IsWorthAWord(const Candidate& candidate,
   const FaultFit& fit = candidate.fit;
   const Suspect& suspect = candidate.suspect;
   if (!(candidate.gain > options.min_log_likelihood_gain)) return false;
-  if (!(suspect.Length(fit) > 3 * suspect.LengthError(fit))) return false;
+  if (!IsThere(candidate)) return false;
   // What the rotation makes good leaves the centres where they are: normals and corners show it.
   const bool is_held_out_better = CentresFitBetter(candidate, before, options) ||
                                   (suspect.trades_rotation && AllFitsBetter(before, fit, options));
@@ -309,7 +316,7 @@ std::optional<Candidate> WhatTheOffsetIs(const Round& round,
   std::optional<Candidate> best;
   const double prior_now = LogPriorOfRangeOffset(now.Value(kRangeOffset), options);
   for (Candidate candidate : round.candidates) {
-    if (IsBeyondLidars(RangeOffsetOf(candidate.fit), options)) continue;
+    if (!IsThere(candidate) || IsBeyondLidars(RangeOffsetOf(candidate.fit), options)) continue;
     candidate.gain += LogPriorOfRangeOffset(candidate.fit.Value(kRangeOffset), options) - prior_now;
     if (candidate.gain > (best ? best->gain : options.min_log_likelihood_gain)) best = candidate;
   }

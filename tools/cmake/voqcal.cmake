@@ -34,24 +34,41 @@ add_custom_target(unit_tests)
 # What most files include, parsed once: a third of the time to build. With it off, a file that forgets an
 # include does not compile.
 option(VOQCAL_PRECOMPILE "Precompile the headers that most files include" ON)
-if(VOQCAL_PRECOMPILE)
-  add_library(voqcal_precompiled STATIC ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
-  target_precompile_headers(voqcal_precompiled PRIVATE
-    <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <optional> <sstream> <stdexcept>
-    <string> <vector> <Eigen/Dense>)
-  target_include_directories(voqcal_precompiled SYSTEM PRIVATE
-    $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
-endif()
 
-# Warnings and include root ("core/...", "messaging/...") of one target of ours.
+# voqcal_precompiled(NAME HEADERS <a> ... [LIBS x] [OPTIONS -o ...]): a precompiled header, for targets that compile
+# with the same options.
+function(voqcal_precompiled name)
+  cmake_parse_arguments(arg "" "" "HEADERS;LIBS;OPTIONS" ${ARGN})
+  if(VOQCAL_PRECOMPILE)
+    add_library(${name} STATIC EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/tools/cmake/precompiled.cpp)
+    target_compile_options(${name} PRIVATE ${arg_OPTIONS})
+    target_precompile_headers(${name} PRIVATE
+      <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <optional> <sstream> <stdexcept>
+      <string> <vector> <Eigen/Dense> ${arg_HEADERS})
+    target_include_directories(${name} SYSTEM PRIVATE
+      $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
+    target_link_libraries(${name} PRIVATE ${arg_LIBS})
+  endif()
+endfunction()
+
+# Programs and tests read flags and compare: what takes time is in the libraries. A quarter less time to build them.
+set(program_options $<$<CONFIG:Release>:-O1>)
+voqcal_precompiled(voqcal_precompiled)
+voqcal_precompiled(voqcal_precompiled_program HEADERS <CLI/CLI.hpp> LIBS CLI11::CLI11 OPTIONS ${program_options})
+
+# Warnings and include root ("core/...", "messaging/...") of one target of ours, and which header it has precompiled.
 function(voqcal_target_defaults target)
+  cmake_parse_arguments(arg "" "PRECOMPILED" "" ${ARGN})
+  if(NOT arg_PRECOMPILED)
+    set(arg_PRECOMPILED voqcal_precompiled)
+  endif()
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/modules)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow)
   if(VOQCAL_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(VOQCAL_PRECOMPILE)
-    target_precompile_headers(${target} REUSE_FROM voqcal_precompiled)
+    target_precompile_headers(${target} REUSE_FROM ${arg_PRECOMPILED})
   endif()
 endfunction()
 
@@ -68,7 +85,8 @@ endfunction()
 function(voqcal_program name)
   cmake_parse_arguments(arg "NOT_INSTALLED" "" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
-  voqcal_target_defaults(${name})
+  target_compile_options(${name} PRIVATE ${program_options})
+  voqcal_target_defaults(${name} PRECOMPILED voqcal_precompiled_program)
   target_link_libraries(${name} PRIVATE ${arg_LIBS})
   if(NOT arg_NOT_INSTALLED)
     install(TARGETS ${name} RUNTIME DESTINATION bin)
@@ -83,7 +101,8 @@ function(voqcal_test name)
   cmake_parse_arguments(arg "" "SHARDS" "SOURCES;LIBS;LABELS;PROPERTIES" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
-  voqcal_target_defaults(${name})
+  target_compile_options(${name} PRIVATE ${program_options})
+  voqcal_target_defaults(${name} PRECOMPILED voqcal_precompiled_test)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test)
   target_compile_definitions(${name} PRIVATE VOQCAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gmock GTest::gtest_main)

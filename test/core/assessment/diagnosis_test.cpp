@@ -9,6 +9,7 @@
 #include "core/camera_detection/planar_pose.hpp"
 #include "core/estimation/refine.hpp"
 #include "core/geometry/rigid.hpp"
+#include "support/sanitizers.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace voqcal {
@@ -104,6 +105,7 @@ std::string FirstCause(const Diagnosis& diagnosis) {
 }
 
 TEST(Diagnose, FindsNothingInACleanSession) {
+  VOQCAL_LEAVE_TO_RELEASE();
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     test::SyntheticSamplesOptions options = Session::Noisy();
     options.seed = seed;
@@ -185,6 +187,7 @@ TEST(Diagnose, FindsAPrincipalPointThatTheCentresDoNotShow) {
 }
 
 TEST(Diagnose, WhatMayMoveTheResultBeyondItsIntervalMustBeMended) {
+  VOQCAL_LEAVE_TO_RELEASE();
   const auto with_covariance = [](double scale) {
     Session session;
     session.covariance_scale = scale;

@@ -13,6 +13,7 @@
 #include "core/likelihood/likelihood.hpp"
 #include "core/likelihood/likelihood_equations.hpp"
 #include "support/matchers.hpp"
+#include "support/sanitizers.hpp"
 #include "support/synthetic_sweeps.hpp"
 
 namespace voqcal {
@@ -294,6 +295,7 @@ TEST(LikelihoodUncertainty, ByResamplingIsThatOfABootstrap) {
 }
 
 TEST(LikelihoodUncertainty, CoversTheTruthAsOftenAsItSays) {
+  VOQCAL_LEAVE_TO_RELEASE();
   constexpr int kRuns = 40;
   constexpr double kSigmas95 = 1.96;
   int num_inside = 0;

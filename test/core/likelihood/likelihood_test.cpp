@@ -10,6 +10,7 @@
 
 #include "core/likelihood/likelihood_terms.hpp"
 #include "support/matchers.hpp"
+#include "support/sanitizers.hpp"
 #include "support/synthetic_samples.hpp"
 #include "support/synthetic_sweeps.hpp"
 
@@ -173,6 +174,7 @@ TEST(RefineByLikelihood, FindsEachFaultWithinThreeStandardErrors) {
 }
 
 TEST(RefineByLikelihood, FindsTheExtrinsicWithinItsCovariance) {
+  VOQCAL_LEAVE_TO_RELEASE();
   // Mean of 6 degrees of freedom over 10 trials: 6 +- 1.1. Claims that are too careful are allowed
   // (model errors are expected that this data do not have), twice the variance too bold is not.
   double sum = 0.0;

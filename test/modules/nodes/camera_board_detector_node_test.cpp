@@ -132,20 +132,22 @@ TEST_F(CameraBoardDetectorNodeTest, SaysWhichLensItsImagesWouldFitWhileTheyFitNo
   half.camera.cy_px = (half.camera.cy_px + 0.5) / 2 - 0.5;
   Bus bus{"memq://"};
   CameraBoardDetectorNode node{half, &bus};
-  const auto show = [&](const Rig& seen_by, double x_m) {
-    test::Send(&bus, half.channels.camera_image, ImageOfBoardAt(seen_by, x_m));
+  const auto show = [&](const image_t& image) {
+    test::Send(&bus, half.channels.camera_image, image);
   };
-  for (int i = 0; i < 10; ++i) show(rig_, 0.0);  // at rest: one view
+  const image_t ahead = ImageOfBoardAt(rig_, 0.0);
+  for (int i = 0; i < 10; ++i) show(ahead);  // at rest: one view
   EXPECT_EQ(node.State(), "running");
-  for (const double x_m : {-0.3, -0.15, 0.15, 0.3}) show(rig_, x_m);
+  for (const double x_m : {-0.3, -0.15, 0.15, 0.3}) show(ImageOfBoardAt(rig_, x_m));
   EXPECT_THAT(node.State(),
               ::testing::StartsWith(
                   "trouble: The board's images do not fit the rig file's camera: the intrinsics "
                   "are those of images of another size; give camera.fx_px: "));
   EXPECT_THAT(node.State(), HasSubstr("(5 of 5 views of the board fit then)"));
+  const image_t half_ahead = ImageOfBoardAt(half, 0.0);
   for (int i = 0; i < 14; ++i) {
     EXPECT_NE(node.State(), "running") << i;
-    show(half, 0.0);
+    show(half_ahead);
   }
   EXPECT_EQ(node.State(), "running") << "as many fit now";
 }

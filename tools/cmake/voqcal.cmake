@@ -35,8 +35,8 @@ add_custom_target(unit_tests)
 # include does not compile.
 option(VOQCAL_PRECOMPILE "Precompile the headers that most files include" ON)
 
-# voqcal_precompiled(NAME HEADERS <a> ... [LIBS x] [OPTIONS -o ...]): a precompiled header, for targets that compile
-# with the same options.
+# voqcal_precompiled(NAME [HEADERS <a> ... LIBS x] [OPTIONS -o ...]): one of these and of HEADERS, for targets that
+# compile with the same options. Not CLI11: its constants would be made in each file.
 function(voqcal_precompiled name)
   cmake_parse_arguments(arg "" "" "HEADERS;LIBS;OPTIONS" ${ARGN})
   if(VOQCAL_PRECOMPILE)
@@ -54,7 +54,7 @@ endfunction()
 # Programs and tests read flags and compare: what takes time is in the libraries. A quarter less time to build them.
 set(program_options $<$<CONFIG:Release>:-O1>)
 voqcal_precompiled(voqcal_precompiled)
-voqcal_precompiled(voqcal_precompiled_program HEADERS <CLI/CLI.hpp> LIBS CLI11::CLI11 OPTIONS ${program_options})
+voqcal_precompiled(voqcal_precompiled_program OPTIONS ${program_options})
 
 # Warnings and include root ("core/...", "messaging/...") of one target of ours, and which header it has precompiled.
 function(voqcal_target_defaults target)

@@ -6,6 +6,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "support/sanitizers.hpp"
 
 namespace voqcal {
 namespace {
@@ -86,6 +89,26 @@ TEST(RunProcess, ExplainsItself) {
   const Outcome version = RunWith({"--version"});
   EXPECT_EQ(version.status, 0);
   EXPECT_THAT(version.out, testing::StartsWith("0."));
+}
+
+/// What the kernel has given this process so far.
+long NumPages() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_minflt;
+}
+
+TEST(RunProcess, KeepsFreedMemoryForWhatComesNext) {
+  VOQCAL_LEAVE_TO_RELEASE();  // a sanitizer's malloc is its own
+  const auto take_and_free = [] {
+    const std::vector<std::vector<char>> frames(4, std::vector<char>(8U << 20U, 1));
+    EXPECT_EQ(frames.back().back(), 1);
+  };
+  RunWith({"--rig", "a.yaml"});
+  take_and_free();
+  const long before = NumPages();
+  for (int i = 0; i < 10; ++i) take_and_free();
+  EXPECT_LT(NumPages() - before, 2048);  // pages of 4 kB in one frame; there were 40
 }
 
 }  // namespace

@@ -59,6 +59,13 @@ class Bus {
   void Subscribe(const std::string& channel,
                  Queue queue,
                  std::function<void(const Message&)> handler);
+  /// The same, with the bytes of the message as they came; they are the handler's for the call.
+  template <typename Message>
+  void SubscribeWithBytes(
+      const std::string& channel,
+      Queue queue,
+      std::function<void(const Message&, const std::uint8_t* bytes, std::size_t num_bytes)>
+          handler);
 
   /// Keeps the newest message of a channel of state in `newest`, which must live as long as
   /// messages are handled.

@@ -39,6 +39,19 @@ template <typename Message>
 void Bus::Subscribe(const std::string& channel,
                     Queue queue,
                     std::function<void(const Message&)> handler) {
+  SubscribeWithBytes<Message>(
+      channel,
+      queue,
+      [handler = std::move(handler)](const Message& message, const std::uint8_t*, std::size_t) {
+        handler(message);
+      });
+}
+
+template <typename Message>
+void Bus::SubscribeWithBytes(
+    const std::string& channel,
+    Queue queue,
+    std::function<void(const Message&, const std::uint8_t*, std::size_t)> handler) {
   SubscribeDecoder(channel,
                    queue,
                    Message::getHash(),
@@ -49,7 +62,9 @@ void Bus::Subscribe(const std::string& channel,
                      if (!delivery.problem.empty()) return delivery;
                      delivery.sequence = SequenceOf(*message);
                      delivery.session = SessionOf(*message);
-                     delivery.handle = [message, &handler] { handler(*message); };
+                     delivery.handle = [message, &handler, bytes, num_bytes] {
+                       handler(*message, static_cast<const std::uint8_t*>(bytes), num_bytes);
+                     };
                      return delivery;
                    });
 }

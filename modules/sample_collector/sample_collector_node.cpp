@@ -21,7 +21,8 @@
 namespace voqcal {
 namespace {
 
-// Of each sensor: some seconds of JPEG or of a 128-beam lidar, 36 raw images of 1920 x 1208.
+// Of each sensor, where its detector falls behind or is silent: some seconds of JPEG or of a
+// 128-beam lidar, 36 raw images of 1920 x 1208.
 constexpr std::size_t kMaxBufferBytes = 256U << 20U;
 
 /// Samples and stops that the lidar was unsure of, together, before any tells where another is.
@@ -59,21 +60,30 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
       session_(session_folder),
       log_sha256_(session_.Sha256()) {
   picker_.SetKnown(session_.samples());
-  bus_.Subscribe<pointcloud2_t>(
-      channels_.lidar_points, Queue::kEvery, [this](const pointcloud2_t& m) {
+  bus_.SubscribeWithBytes<pointcloud2_t>(
+      channels_.lidar_points,
+      Queue::kEvery,
+      [this](const pointcloud2_t& m, const std::uint8_t* bytes, std::size_t num_bytes) {
         clocks_.TakeLidar(m.utime);
-        Keep(m, &lidar_);
+        Keep({m.utime, {bytes, bytes + num_bytes}}, &lidar_);
       });
-  bus_.Subscribe<image_t>(channels_.camera_image, Queue::kEvery, [this](const image_t& m) {
-    clocks_.TakeCamera(m.utime);
-    Keep(m, &camera_);
-  });
-  bus_.Subscribe<lidar_board_t>(channels_.lidar_board,
-                                Queue::kEvery,
-                                [this](const lidar_board_t& m) { OnBoard(m, &lidar_); });
-  bus_.Subscribe<camera_board_t>(channels_.camera_board,
-                                 Queue::kEvery,
-                                 [this](const camera_board_t& m) { OnBoard(m, &camera_); });
+  bus_.SubscribeWithBytes<image_t>(
+      channels_.camera_image,
+      Queue::kEvery,
+      [this](const image_t& m, const std::uint8_t* bytes, std::size_t num_bytes) {
+        clocks_.TakeCamera(m.utime);
+        Keep({m.utime, {bytes, bytes + num_bytes}}, &camera_);
+      });
+  bus_.Subscribe<lidar_board_t>(
+      channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& m) {
+        OnBoard(m, &lidar_);
+        lidar_.frames.ForgetJudged(m.utime, picker_.LidarUtimesInUse());
+      });
+  bus_.Subscribe<camera_board_t>(
+      channels_.camera_board, Queue::kEvery, [this](const camera_board_t& m) {
+        OnBoard(m, &camera_);
+        camera_.frames.ForgetJudged(m.utime, picker_.CameraUtimesInUse());
+      });
   bus_.Subscribe<module_status_t>(
       channels_.module_status, Queue::kEvery, [this](const module_status_t& m) {
         heartbeats_.Take(m, std::chrono::steady_clock::now());
@@ -232,10 +242,9 @@ void SampleCollectorNode::NoteMiss(const camera_board_t& message) {
                EncodeMessage(message));
 }
 
-template <typename Message>
-void SampleCollectorNode::Keep(const Message& message, Stream* stream) {
+void SampleCollectorNode::Keep(SensorFrame frame, Stream* stream) {
   stream->has_new_frames = true;
-  stream->frames.Add({message.utime, EncodeMessage(message)});
+  stream->frames.Add(std::move(frame));
 }
 
 // A message that contradicts itself is a frame without a board, and costs that frame only.

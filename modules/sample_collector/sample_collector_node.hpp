@@ -47,6 +47,10 @@ class SampleCollectorNode : public Module {
   void Finish();
 
   const std::vector<BoardSample>& samples() const { return session_.samples(); }
+  /// Of sweeps and images that a sample may still be made of.
+  std::size_t NumFrameBytes() const {
+    return lidar_.frames.num_bytes() + camera_.frames.num_bytes();
+  }
 
  private:
   /// What is heard of one sensor.
@@ -57,8 +61,7 @@ class SampleCollectorNode : public Module {
     bool has_new_boards = false;                                          ///< ...was called last.
   };
 
-  template <typename Message>
-  static void Keep(const Message& message, Stream* stream);
+  static void Keep(SensorFrame frame, Stream* stream);
   template <typename BoardMessage>
   void OnBoard(const BoardMessage& message, Stream* stream);
   /// Another session's detectors may say what this one's cannot be told from.

@@ -180,6 +180,24 @@ std::vector<PickerDecision> SamplePicker::RestartIfBack(std::int64_t utime, std:
 
 std::vector<PickerDecision> SamplePicker::Flush() { return Judge(true); }
 
+std::vector<std::int64_t> SamplePicker::LidarUtimesInUse() const {
+  std::vector<std::int64_t> utimes;
+  for (const LidarSighting& lidar : lidar_) utimes.push_back(lidar.utime);
+  for (const std::vector<Pair>* pairs : {&window_, &followed_}) {
+    for (const Pair& pair : *pairs) utimes.push_back(pair.lidar.utime);
+  }
+  return utimes;
+}
+
+std::vector<std::int64_t> SamplePicker::CameraUtimesInUse() const {
+  std::vector<std::int64_t> utimes;
+  for (const CameraSighting& camera : camera_) utimes.push_back(camera.utime);
+  for (const std::vector<Pair>* pairs : {&window_, &followed_}) {
+    for (const Pair& pair : *pairs) utimes.push_back(pair.camera.utime);
+  }
+  return utimes;
+}
+
 void SamplePicker::SetKnown(const std::vector<BoardSample>& samples) {
   known_T_camera_board_.clear();
   for (const BoardSample& sample : samples) {

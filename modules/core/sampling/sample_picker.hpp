@@ -88,6 +88,11 @@ class SamplePicker {
   /// The stop is unsure no more: if its sample is discarded, the board may come back there.
   PickerDecision TakeStop(const UnsureStop& stop);
 
+  /// Capture times of the frames that a later decision may name. Of those that were added no other
+  /// is.
+  std::vector<std::int64_t> LidarUtimesInUse() const;
+  std::vector<std::int64_t> CameraUtimesInUse() const;
+
   /// The samples that the session has: new poses must differ from them. Unsure stops stay, as
   /// whoever keeps them does: the same stop must not come twice.
   void SetKnown(const std::vector<BoardSample>& samples);

@@ -48,6 +48,38 @@ TEST(SamplePicker, AcceptsAStillBoardOnce) {
   EXPECT_NEAR(decisions[2].accepted->lidar.pose.covariance(0, 0), 1.0, 1e-12);
 }
 
+TEST(SamplePicker, NamesNoFrameThatIsNotInUse) {
+  SamplePicker picker(Board(), {});
+  for (int frame = 0; frame < 40; ++frame) {
+    std::vector<std::int64_t> lidar_in_use = picker.LidarUtimesInUse();
+    lidar_in_use.push_back(frame * kFrameUs);
+    std::vector<PickerDecision> decisions;
+    const double x_m = 0.5 + 0.1 * (frame / 5);  // a stop of five frames each
+    LidarSighting lidar = Lidar(frame, x_m);
+    if (frame / 5 % 2 == 1) lidar = {frame * kFrameUs, {}, "unsure"};
+    Append(picker.Add(lidar), &decisions);
+    // The camera's frames come two later.
+    std::vector<std::int64_t> camera_in_use = picker.CameraUtimesInUse();
+    camera_in_use.push_back((frame - 2) * kFrameUs);
+    if (frame >= 2)
+      Append(picker.Add(Camera(frame - 2, 0.5 + 0.1 * ((frame - 2) / 5))), &decisions);
+    for (const PickerDecision& decision : decisions) {
+      if (decision.accepted) {
+        EXPECT_THAT(lidar_in_use, testing::Contains(decision.accepted->utime));
+        EXPECT_THAT(camera_in_use, testing::Contains(decision.accepted->camera_utime));
+      }
+      if (!decision.unsure) continue;
+      for (std::size_t i = 0; i < decision.unsure->lidar.size(); ++i) {
+        EXPECT_THAT(lidar_in_use, testing::Contains(decision.unsure->lidar[i].utime));
+        EXPECT_THAT(camera_in_use, testing::Contains(decision.unsure->camera[i].utime));
+      }
+    }
+    // Three of a window, three that are followed, and those that wait.
+    EXPECT_LE(picker.LidarUtimesInUse().size(), 9U);
+    EXPECT_LE(picker.CameraUtimesInUse().size(), 9U);
+  }
+}
+
 TEST(SamplePicker, TakesNoBoardOfSweepsFromBeforeItCameToRest) {
   SamplePicker picker(Board(), {});
   std::vector<PickerDecision> decisions;

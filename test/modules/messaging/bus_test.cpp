@@ -59,6 +59,21 @@ TEST(Bus, CarriesMessagesInOrder) {
   EXPECT_EQ(bus.num_publish_failures(), 0);
 }
 
+TEST(Bus, HandsOverTheBytesAsTheyCame) {
+  Bus bus("memq://");
+  std::vector<std::uint8_t> received;
+  bus.SubscribeWithBytes<event_t>(
+      "EVENT",
+      Queue::kEvery,
+      [&](const event_t& event, const std::uint8_t* bytes, std::size_t num_bytes) {
+        EXPECT_EQ(event.seq, 7);
+        received.assign(bytes, bytes + num_bytes);
+      });
+  bus.Publish("EVENT", Event(7));
+  HandleAll(&bus);
+  EXPECT_EQ(received, EncodeMessage(Event(7)));
+}
+
 TEST(Bus, TimesOutWithoutMessages) {
   Bus bus("memq://");
   EXPECT_FALSE(bus.HandleOnce(kNoWait));

@@ -138,6 +138,15 @@ TEST_F(SampleCollectorNodeTest, KeepsTheSweepAndTheImageOfTheSamplesFirstFrame) 
   EXPECT_EQ(node_->counters().count("accepted without its scene"), 0U);
 }
 
+TEST_F(SampleCollectorNodeTest, KeepsFramesOnlyUntilTheyAreJudged) {
+  ShowStop(0, {0, 1, 2, 3});
+  const std::size_t num_bytes = node_->NumFrameBytes();
+  EXPECT_GT(num_bytes, 0U);
+  for (int stop = 1; stop < 4; ++stop) ShowStop(stop, {0, 1, 2, 3});
+  EXPECT_EQ(node_->NumFrameBytes(), num_bytes);
+  EXPECT_EQ(node_->counters().count("accepted without its scene"), 0U);
+}
+
 TEST_F(SampleCollectorNodeTest, SaysThatASamplesFramesWereLost) {
   ShowStop(0, {1, 2});
   ASSERT_THAT(node_->samples(), SizeIs(1));

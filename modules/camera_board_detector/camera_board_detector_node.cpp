@@ -40,7 +40,7 @@ Expected<cv::Mat, Miss> PictureOf(const image_t& message, const CameraModel& cam
                 ""};
   }
   try {
-    return FromMessage(message);
+    return GreyFromMessage(message);
   } catch (const std::runtime_error& error) {
     return Miss{"unreadable image", error.what()};
   }

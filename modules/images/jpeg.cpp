@@ -160,9 +160,7 @@ J_COLOR_SPACE ColourSpaceOf(const cv::Mat& image) {
   }
 }
 
-}  // namespace
-
-cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes, int reduction) {
+cv::Mat Decode(const Bytes& bytes, int reduction, bool is_grey_wanted) {
   Decompressor decompressor;
   jpeg_decompress_struct& info = decompressor.info;
   decompressor.Call([&] {
@@ -175,7 +173,7 @@ cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes, int reduction) {
                    info.image_height,
                    jpeg_has_multiple_scans(&info) ? kMaxImagePixels / 2 : kMaxImagePixels);
   if (info.num_components == 4) throw std::runtime_error("it is a CMYK one");
-  const bool is_gray = info.num_components == 1;
+  const bool is_gray = is_grey_wanted || info.num_components == 1;
   info.out_color_space = is_gray ? JCS_GRAYSCALE : JCS_EXT_BGR;
   info.scale_num = 1;
   info.scale_denom = static_cast<unsigned>(reduction);
@@ -189,6 +187,12 @@ cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes, int reduction) {
   });
   return image;
 }
+
+}  // namespace
+
+cv::Mat DecodeJpeg(const Bytes& bytes, int reduction) { return Decode(bytes, reduction, false); }
+
+cv::Mat DecodeJpegInGrey(const Bytes& bytes) { return Decode(bytes, 1, true); }
 
 std::vector<std::uint8_t> EncodeJpeg(const cv::Mat& image, int quality) {
   if (image.empty()) throw std::invalid_argument("image to encode: is empty");

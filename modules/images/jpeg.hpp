@@ -17,6 +17,10 @@ namespace voqcal {
 ///     damaged in their middle, gives an image with wrong parts.
 cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes, int reduction = 1);
 
+/// The same in GRAY: its brightness as it is in the file, without the work of making colours of it.
+/// @throws as DecodeJpeg.
+cv::Mat DecodeJpegInGrey(const std::vector<std::uint8_t>& bytes);
+
 /// @param image    8-bit: GRAY, BGR or BGRA, whose alpha is left out.
 /// @param quality  1 to 100. Colours have half the resolution (4:2:0).
 /// @throws std::invalid_argument for another type or an empty image; std::runtime_error if it is

@@ -86,8 +86,9 @@ void RequireHeader(const image_t& message) {
   if (!info->has_end) Fail("the " + format + " is cut off");
 }
 
-cv::Mat EncodedImage(const image_t& message) try {
-  return message.pixelformat == kPixelPng ? DecodePng(message.data) : DecodeJpeg(message.data);
+template <typename Decode>
+cv::Mat Decoded(const image_t& message, const Decode& decode) try {
+  return decode(message.data);
 } catch (const std::runtime_error& error) {
   Fail("the " + Format(message) + " cannot be decoded: " + error.what());
 }
@@ -147,11 +148,26 @@ void RequireSound(const image_t& message) {
 
 cv::Mat FromMessage(const image_t& message) {
   RequireSound(message);
-  const bool is_encoded = message.pixelformat == kPixelMjpeg || message.pixelformat == kPixelPng;
-  if (is_encoded) return EncodedImage(message);
+  using Bytes = std::vector<std::uint8_t>;
+  if (message.pixelformat == kPixelPng) return Decoded(message, DecodePng);
+  if (message.pixelformat == kPixelMjpeg) {
+    return Decoded(message, [](const Bytes& bytes) { return DecodeJpeg(bytes); });
+  }
   cv::Mat image = RawImage(message);
   if (message.pixelformat == kPixelRgb) cv::cvtColor(image, image, cv::COLOR_RGB2BGR);
   return image;
+}
+
+cv::Mat GreyFromMessage(const image_t& message) {
+  if (message.pixelformat == kPixelMjpeg) {
+    RequireSound(message);
+    return Decoded(message, DecodeJpegInGrey);
+  }
+  const cv::Mat image = FromMessage(message);
+  if (image.channels() == 1) return image;
+  cv::Mat grey;
+  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+  return grey;
 }
 
 camera_info_t ToMessage(const CameraModel& camera, std::int64_t utime, std::int64_t seq) {

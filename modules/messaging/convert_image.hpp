@@ -41,6 +41,8 @@ void RequireSound(const image_t& message);
 ///     too large ones. (A JPEG damaged in its middle decodes to an image with wrong parts: the
 ///     format has no checksum.)
 cv::Mat FromMessage(const image_t& message);
+/// The same in GRAY, of a JPEG for less work (DecodeJpegInGrey).
+cv::Mat GreyFromMessage(const image_t& message);
 
 camera_info_t ToMessage(const CameraModel& camera, std::int64_t utime, std::int64_t seq);
 

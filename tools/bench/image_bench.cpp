@@ -46,6 +46,11 @@ void DecodeJpegAt(benchmark::State& state) {
   }
 }
 
+void DecodeJpegGrey(benchmark::State& state) {
+  const Bytes jpeg = File(".jpg");
+  for (auto _ : state) benchmark::DoNotOptimize(DecodeJpegInGrey(jpeg));
+}
+
 void ImdecodeJpegAt(benchmark::State& state) {
   const Bytes jpeg = File(".jpg");
   const int flags = state.range(0) == 1 ? cv::IMREAD_COLOR : cv::IMREAD_REDUCED_COLOR_2;
@@ -71,6 +76,7 @@ void ImencodeJpegWhole(benchmark::State& state) {
 }
 
 BENCHMARK(DecodeJpegAt)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
+BENCHMARK(DecodeJpegGrey)->Unit(benchmark::kMillisecond);
 BENCHMARK(ImdecodeJpegAt)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
 BENCHMARK(DecodePngWhole)->Unit(benchmark::kMillisecond);
 BENCHMARK(ImdecodePngWhole)->Unit(benchmark::kMillisecond);

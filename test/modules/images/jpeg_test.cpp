@@ -45,6 +45,13 @@ TEST_P(JpegOfForm, IsDecodedAsByOpenCv) {
   }
 }
 
+TEST_P(JpegOfForm, IsDecodedInGreyAsByOpenCv) {
+  for (const cv::Size& size : {cv::Size(64, 48), cv::Size(61, 39), cv::Size(3, 2)}) {
+    const Bytes jpeg = JpegFile(size.width, size.height, GetParam());
+    ExpectSame(DecodeJpegInGrey(jpeg), DecodedByOpenCv(jpeg, cv::IMREAD_GRAYSCALE));
+  }
+}
+
 TEST_P(JpegOfForm, IsMadeSmallerAsByOpenCv) {
   const Bytes jpeg = JpegFile(61, 39, GetParam());
   const bool is_gray = GetParam().num_channels == 1;

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "images/encoded_image.hpp"
 
@@ -114,6 +115,18 @@ TEST(ImageMessage, DecodesJpeg) {
     // size.
     EXPECT_LT(LargestDifference(FromMessage(message), image), 25);
   }
+}
+
+TEST(ImageMessage, IsReadInGrey) {
+  cv::Mat grey;
+  cv::cvtColor(Picture(), grey, cv::COLOR_BGR2GRAY);
+  EXPECT_EQ(LargestDifference(GreyFromMessage(ToMessage(Picture(), 0, 1)), grey), 0);
+  EXPECT_EQ(LargestDifference(GreyFromMessage(ToMessage(grey, 0, 1)), grey), 0);
+  const image_t png = EncodedToMessage(Encoded(Picture(), ".png"), 0, 1);
+  EXPECT_EQ(LargestDifference(GreyFromMessage(png), grey), 0);
+  // By the loss of the compression alone, which leaves brightness whole.
+  const image_t jpeg = EncodedToMessage(Encoded(Picture(), ".jpg"), 0, 1);
+  EXPECT_LT(LargestDifference(GreyFromMessage(jpeg), grey), 6);
 }
 
 TEST(ImageMessage, RefusesToSendOtherFiles) {

@@ -78,7 +78,7 @@ std::string SensorLoad::Text() const {
                 Quantile(latencies_ms, 1.0));
 }
 
-LoadReport::LoadReport(const std::vector<std::string>& watched) {
+LoadReport::LoadReport(const std::vector<std::string>& watched) : own_start_cpu_s_(CpuS("self")) {
   for (const std::string& each : watched) {
     const std::size_t at = each.find('=');
     if (at != std::string::npos) watched_.push_back({each.substr(0, at), each.substr(at + 1), {}});
@@ -134,13 +134,15 @@ std::string LoadReport::Text() const {
     const std::vector<double> second_half(
         each.memory_mb.begin() + static_cast<std::ptrdiff_t>(each.memory_mb.size() / 2),
         each.memory_mb.end());
-    text += Format("%-22s %.0f MB, %+.2f MB a minute; %.0f %% of a core\n",
+    text += Format("%-22s %.0f MB, %+.2f MB a minute; %.1f %% of a core\n",
                    each.name.c_str(),
                    each.memory_mb.back(),
                    SlopePerMinute(second_half),
                    100 * each.cpu_s / elapsed_s);
   }
-  return text + Format("modules together: %.2f cores\n", cores);
+  return text + Format("modules together: %.2f cores; their drivers, simulated here: %.2f\n",
+                       cores,
+                       (CpuS("self") - own_start_cpu_s_) / elapsed_s);
 }
 
 }  // namespace voqcal

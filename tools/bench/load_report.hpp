@@ -49,6 +49,7 @@ class LoadReport {
 
   std::map<std::string, SensorLoad> sensors_;
   std::vector<Watched> watched_;
+  double own_start_cpu_s_;  // of this process, before it sends anything
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point next_read_;
   std::map<std::string, module_status_t> statuses_;

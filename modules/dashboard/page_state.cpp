@@ -156,11 +156,10 @@ Json RowPart(const PairRow& row) {
   return part;
 }
 
-/// 1 sigma of three of the covariance's axes.
-Json Sigma(const extrinsic_refined_t& refined, int first, double scale) {
+/// 1 sigma of three of a covariance's axes.
+Json Sigma(const double (&covariance)[6][6], int first, double scale) {
   Json sigma = Json::array();
-  for (int i = first; i < first + 3; ++i)
-    sigma.push_back(scale * std::sqrt(refined.covariance[i][i]));
+  for (int i = first; i < first + 3; ++i) sigma.push_back(scale * std::sqrt(covariance[i][i]));
   return sigma;
 }
 
@@ -227,8 +226,10 @@ std::string ResultJson(const extrinsic_refined_t& refined,
   json["num_samples"] = refined.num_samples;
   json["translation_m"] = List(refined.T_camera_lidar.translation_m);
   json["quaternion_xyzw"] = List(refined.T_camera_lidar.quaternion_xyzw);
-  json["sigma_deg"] = Sigma(refined, 0, kDegPerRad);
-  json["sigma_mm"] = Sigma(refined, 3, 1e3);
+  json["sigma_deg"] = Sigma(refined.covariance_given_rig, 0, kDegPerRad);
+  json["sigma_mm"] = Sigma(refined.covariance_given_rig, 3, kMmPerM);
+  json["place_sigma_deg"] = Sigma(refined.covariance, 0, kDegPerRad);
+  json["place_sigma_mm"] = Sigma(refined.covariance, 3, kMmPerM);
   json["held_out"] = {{"centre_px", Part(assessment.refined_held_out.centre_px)},
                       {"centre_mm", Part(assessment.refined_held_out.centre_mm)}};
   json["predicted"] = Json::array();

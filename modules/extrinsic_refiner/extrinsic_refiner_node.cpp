@@ -45,6 +45,7 @@ extrinsic_refined_t ExtrinsicRefinerNode::Refine() const {
         SamplesWithout(all, averaged_->inconsistent_ids);
     const BestExtrinsic best =
         RefineBest(samples,
+                   rig_.board,
                    rig_.camera,
                    FromMessage(*averaged_),
                    scene_views_ ? scene_views_(samples) : std::vector<SceneView>(),

@@ -83,6 +83,7 @@ extrinsic_refined_t ToMessage(const BestExtrinsic& best,
   message.method = ToString(best.method);
   message.scene = best.scene_note;
   Eigen::Map<RowMajor6d>(&message.covariance[0][0]) = best.covariance;
+  Eigen::Map<RowMajor6d>(&message.covariance_given_rig[0][0]) = best.covariance_given_rig;
   message.reprojection_rms_px = best.reprojection_rms_px;
   message.sample_ids = sample_ids;
   message.num_samples = static_cast<std::int32_t>(sample_ids.size());
@@ -99,7 +100,6 @@ extrinsic_refined_t ToMessage(const BestExtrinsic& best,
   const LikelihoodUncertainty& uncertainty = likelihood.uncertainty;
   Eigen::Map<Vector6d>(message.sigma_by_likelihood) = uncertainty.by_likelihood;
   Eigen::Map<Vector6d>(message.sigma_by_resampling) = uncertainty.by_resampling;
-  Eigen::Map<Vector6d>(message.sigma_by_model_errors) = uncertainty.by_model_errors;
   const LikelihoodNoise& noise = likelihood.noise;
   message.range_noise_m = noise.range_m;
   message.along_ray_error_m = noise.along_ray_m;
@@ -116,6 +116,7 @@ BestExtrinsic FromMessage(const extrinsic_refined_t& message) {
   best.method = MethodFromString(message.method);
   best.scene_note = message.scene;
   best.covariance = Eigen::Map<const RowMajor6d>(&message.covariance[0][0]);
+  best.covariance_given_rig = Eigen::Map<const RowMajor6d>(&message.covariance_given_rig[0][0]);
   best.reprojection_rms_px = message.reprojection_rms_px;
   std::vector<PoseScore> poses;
   for (const pose_score_t& pose : message.held_out) poses.push_back(FromMessage(pose));
@@ -133,8 +134,7 @@ BestExtrinsic FromMessage(const extrinsic_refined_t& message) {
   LikelihoodUncertainty& uncertainty = best.likelihood.uncertainty;
   uncertainty.by_likelihood = Eigen::Map<const Vector6d>(message.sigma_by_likelihood);
   uncertainty.by_resampling = Eigen::Map<const Vector6d>(message.sigma_by_resampling);
-  uncertainty.by_model_errors = Eigen::Map<const Vector6d>(message.sigma_by_model_errors);
-  uncertainty.covariance = best.covariance;
+  uncertainty.covariance = best.covariance_given_rig;
   return best;
 }
 

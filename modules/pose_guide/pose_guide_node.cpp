@@ -60,7 +60,7 @@ next_pose_t PoseGuideNode::Propose(Basis basis) const {
       const BestExtrinsic best = FromMessage(*refined_);
       state.belief = {best.T_camera_lidar, best.Bias(), best.likelihood.noise};
       // Of few samples the residuals may tell none.
-      if (best.covariance.allFinite()) state.covariance = best.covariance;
+      if (best.covariance_given_rig.allFinite()) state.covariance = best.covariance_given_rig;
     } else if (averaged_->problem.empty()) {
       state.belief = {FromMessage(averaged_->T_camera_lidar), {}, {}};
     }

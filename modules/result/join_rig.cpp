@@ -92,7 +92,7 @@ void TakeResult(const std::vector<BoardSample>& samples,
     return;
   }
   pair.extrinsic.T_to_from = result->T_camera_lidar;
-  pair.extrinsic.covariance = result->covariance;
+  pair.extrinsic.covariance = result->covariance_given_rig;
   pair.verdict = VerdictOf(*result);
   pair.num_samples = static_cast<int>(result->used_ids.size());
   pair.samples_sha256 = result->made_from.log_sha256;

@@ -110,7 +110,6 @@ void ReadMatrix(YamlSection* section, Eigen::Isometry3d* T) {
 }  // namespace
 
 std::string ToYaml(const CalibrationResult& result) {
-  const std::string covariance = RowsYaml(result.covariance, "  ");
   const MadeFrom& made_from = result.made_from;
   return "# Extrinsic calibration of a camera and a lidar, by voqcal.\n"
          "T_camera_lidar:  # p_camera = T_camera_lidar * p_lidar, metres\n" +
@@ -119,8 +118,12 @@ std::string ToYaml(const CalibrationResult& result) {
          TransformYaml(result.T_camera_lidar.inverse(), "  ") +
          "# of T_camera_lidar: rotation_rad, then translation_m, perturbed on the left (camera) "
          "side\n"
-         "covariance:\n" +
-         covariance + "camera:  # the rig file's, with which T_camera_lidar goes\n" +
+         "covariance:  # of where the lidar is, as camera and board of the rig file may be off\n" +
+         RowsYaml(result.covariance, "  ") +
+         "covariance_given_rig:  # if they are exactly right: where points land in the image, how "
+         "results repeat\n" +
+         RowsYaml(result.covariance_given_rig, "  ") +
+         "camera:  # the rig file's, with which T_camera_lidar goes\n" +
          CameraYaml(result.camera, "  ") + VerdictYaml(VerdictOf(result)) + Methods(result) +
          Averaged(result.averaged) + LidarBiasYaml(result.lidar_bias) +
          "# all chessboards are seen turned by so much about the camera's x and y, against the "

@@ -48,11 +48,17 @@ void ReadLikelihood(OptionSection* refiner, LikelihoodOptions* options) {
   section.ReadDegrees("camera_error_deg", &options->camera_error_rad, "...and its tilt");
   section.Read("focal_length_error",
                &options->focal_length_error,
-               "of the camera's focal lengths, relative");
+               "of the camera's focal lengths, relative, and of one against the other");
   section.Read("principal_point_error_px",
                &options->principal_point_error_px,
                "of its principal point, each way");
+  section.Read("distortion_error",
+               &options->distortion_error,
+               "of its distortion: the share by which a point moves half the image's width away");
   section.Read("board_size_error", &options->board_size_error, "of a chessboard square, relative");
+  section.Read("pattern_offset_error_m",
+               &options->pattern_offset_error_m,
+               "of the pattern's offset on the plate, each way");
   section.Read(
       "lens_error",
       &options->lens_error,

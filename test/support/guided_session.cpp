@@ -114,8 +114,8 @@ class Session {
     if (!VarietyProblem(Samples()).empty()) return {num_holds_, kUnknown, kUnknown};
     Vector6d start_error;  // about what the VOQ average leaves
     start_error << 0.005, 0.003, -0.004, 0.005, -0.004, 0.006;
-    const LikelihoodExtrinsic refined = RefineByLikelihood(
-        Samples(), rig_.camera, PerturbLeft(T_truth_, start_error), rig_.likelihood);
+    const LikelihoodExtrinsic refined =
+        RefineByLikelihood(Samples(), PerturbLeft(T_truth_, start_error), rig_.likelihood);
     if (!refined.IsUsable()) return {num_holds_, kUnknown, kUnknown};
     belief_ = {refined.T_camera_lidar, refined.bias, refined.noise};
     covariance_ = refined.uncertainty.covariance;

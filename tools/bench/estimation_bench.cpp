@@ -105,8 +105,7 @@ void RefineByLikelihoodOf(benchmark::State& state) {
   const auto samples = SamplesWithSweeps(static_cast<int>(state.range(0)));
   const auto all = test::Pointers(samples);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        RefineByLikelihood(all, test::TestCamera(), test::TestExtrinsic(), {}));
+    benchmark::DoNotOptimize(RefineByLikelihood(all, test::TestExtrinsic(), {}));
   }
 }
 BENCHMARK(RefineByLikelihoodOf)->Arg(30)->Unit(benchmark::kMillisecond);
@@ -118,7 +117,8 @@ void RefineBestOf(benchmark::State& state) {
   AveragedExtrinsic average;
   average.T_camera_lidar = test::TestExtrinsic();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(RefineBest(all, test::TestCamera(), average, {}, RefinerOptions{}));
+    benchmark::DoNotOptimize(
+        RefineBest(all, test::TestBoard(), test::TestCamera(), average, {}, RefinerOptions{}));
   }
 }
 BENCHMARK(RefineBestOf)->Arg(30)->Unit(benchmark::kMillisecond);

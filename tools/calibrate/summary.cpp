@@ -11,10 +11,18 @@ namespace {
 
 std::string Tenths(double value) { return std::isnan(value) ? "-" : Format("%.1f", value); }
 
-// "0.3 0.6 0.4 mm", a line's end; "unknown" where the poses are too few to tell.
-std::string SigmaText(const Eigen::Vector3d& sigma, const char* format, const char* unit) {
-  if (!sigma.allFinite()) return "unknown\n";
-  return Format(format, sigma.x(), sigma.y(), sigma.z()) + unit;
+// "0.3 0.6 0.4 mm"; "unknown" where the poses are too few to tell.
+std::string ShiftSigma(const Matrix6d& covariance) {
+  const Eigen::Vector3d sigma_mm = kMmPerM * covariance.diagonal().tail<3>().cwiseSqrt();
+  if (!sigma_mm.allFinite()) return "unknown";
+  return Format("%.1f %.1f %.1f mm", sigma_mm.x(), sigma_mm.y(), sigma_mm.z());
+}
+
+// "0.012 0.010 0.004 deg"; the same.
+std::string TurnSigma(const Matrix6d& covariance) {
+  const Eigen::Vector3d sigma_deg = kDegPerRad * covariance.diagonal().head<3>().cwiseSqrt();
+  if (!sigma_deg.allFinite()) return "unknown";
+  return Format("%.3f %.3f %.3f deg", sigma_deg.x(), sigma_deg.y(), sigma_deg.z());
 }
 
 /// The headline, then what is not good.
@@ -30,18 +38,20 @@ std::string TransformLines(const CalibrationResult& result) {
   const Eigen::Vector3d& t = result.T_camera_lidar.translation();
   Eigen::Quaterniond q(result.T_camera_lidar.linear());
   if (q.w() < 0) q.coeffs() = -q.coeffs();
-  const Vector6d sigma = result.covariance.diagonal().cwiseSqrt();
   return Format(
              "T_camera_lidar (p_camera = T_camera_lidar * p_lidar)\n"
              "  translation_m    %9.5f %9.5f %9.5f   1 sigma ",
              t.x(),
              t.y(),
              t.z()) +
-         SigmaText(1e3 * sigma.tail<3>(), "%.1f %.1f %.1f", " mm\n") +
+         ShiftSigma(result.covariance_given_rig) + "\n" +
          Format(
              "  quaternion_xyzw  %9.6f %9.6f %9.6f %9.6f   1 sigma ", q.x(), q.y(), q.z(), q.w()) +
-         SigmaText(kDegPerRad * sigma.head<3>(), "%.3f %.3f %.3f", " deg\n") +
-         "  for this lens and this board; what could hide there is said under \"not judged\"\n";
+         TurnSigma(result.covariance_given_rig) +
+         "\n  that is with this rig file; as its lens and board may be off, where the lidar really "
+         "is: "
+         "1 sigma " +
+         ShiftSigma(result.covariance) + ", " + TurnSigma(result.covariance) + "\n";
 }
 
 // The average is not held out: its own samples flatter it.

@@ -43,7 +43,7 @@ std::vector<Run> RunAll(const AccuracyArgs& args) {
     std::vector<const BoardSample*> all;
     for (const BoardSample& sample : samples) all.push_back(&sample);
     const LikelihoodExtrinsic refined = RefineByLikelihood(
-        all, rig.camera, PerturbLeft(T_truth, start_error), rig.extrinsic_refiner.likelihood);
+        all, PerturbLeft(T_truth, start_error), rig.extrinsic_refiner.likelihood);
     if (!refined.IsUsable()) {
       std::printf("seed %u: %s\n", seed, refined.Summary().c_str());
       continue;

@@ -37,7 +37,8 @@ void Compare(const CalibrationOutcome& few, const CalibrationOutcome& rest, Tall
   if (!few.problem.empty() || !rest.problem.empty()) return;
   const Vector6d difference =
       DifferenceLeft(rest.refined.T_camera_lidar, few.refined.T_camera_lidar);
-  const Vector6d variance = few.refined.covariance.diagonal() + rest.refined.covariance.diagonal();
+  const Vector6d variance =
+      few.refined.covariance_given_rig.diagonal() + rest.refined.covariance_given_rig.diagonal();
   tally->sum_squares += difference.cwiseAbs2().cwiseQuotient(variance);
   ++tally->num_compared;
   if (VerdictOf(few.calibration).grade == Grade::kBad) return;

@@ -100,7 +100,7 @@ BestExtrinsic Refined(const std::vector<BoardSample>& samples, const Calibration
   const std::vector<const BoardSample*> used = chosen.Used();
   const AveragedSets averaged = AverageSets(used, sets.sets, task);
   if (!averaged.problem.empty()) return failed(averaged.problem);
-  return RefineBest(used, task.camera, averaged.average, {}, task.options.refinement);
+  return RefineBest(used, task.board, task.camera, averaged.average, {}, task.options.refinement);
 }
 
 class RigRun {
@@ -138,7 +138,7 @@ class RigRun {
                       refined.problem.c_str());
           continue;
         }
-        pairs.push_back({lidar, camera, refined.T_camera_lidar, refined.covariance});
+        pairs.push_back({lidar, camera, refined.T_camera_lidar, refined.covariance_given_rig});
       }
     }
     for (std::size_t a = 0; a < simulation_.cameras.size(); ++a) {

@@ -27,7 +27,7 @@ struct SubsetsArgs {
 BestExtrinsic RefineDraw(const ChosenSamples& draw, const CalibrationTask& task) {
   const std::vector<const BoardSample*> used = draw.Used();
   const AveragedSets averaged = AverageSets(used, ChooseSets(draw, task).sets, task);
-  return RefineBest(used, task.camera, averaged.average, {}, task.options.refinement);
+  return RefineBest(used, task.board, task.camera, averaged.average, {}, task.options.refinement);
 }
 
 // The first `num` of the samples, as one draw orders them, and the rest.

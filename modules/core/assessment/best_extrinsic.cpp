@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/likelihood/rig_errors.hpp"
 #include "core/parallel.hpp"
 #include "core/problems.hpp"
 #include "core/selection/pose_variety.hpp"
@@ -236,6 +237,7 @@ SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
 }
 
 BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
+                         const BoardSpec& board,
                          const CameraModel& camera,
                          const AveragedExtrinsic& average,
                          const std::vector<SceneView>& views,
@@ -251,7 +253,7 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
       RefineExtrinsic(samples, camera, T_start, options.reprojection);
   const bool has_points = MostHavePoints(samples);
   if (has_points) {
-    best.likelihood = RefineByLikelihood(samples, camera, T_start, options.likelihood);
+    best.likelihood = RefineByLikelihood(samples, T_start, options.likelihood);
   }
   best.joint = RefineJointly(samples,
                              T_start,
@@ -284,22 +286,28 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
   best.held_out = chosen.held_out;
   switch (chosen.method) {
     case RefineMethod::kAverage:
-      best.covariance = CovarianceOfAverage(samples, average, options.reprojection.range_offset_m);
+      best.covariance_given_rig =
+          CovarianceOfAverage(samples, average, options.reprojection.range_offset_m);
       best.held_out = NoScore(samples.size());  // its trial's score is of its own samples
       break;
     case RefineMethod::kReprojection:
       best.T_camera_lidar = reprojection.T_camera_lidar;
-      best.covariance = reprojection.covariance;
+      best.covariance_given_rig = reprojection.covariance;
       break;
     case RefineMethod::kLikelihood:
       best.T_camera_lidar = best.likelihood.T_camera_lidar;
-      best.covariance = best.likelihood.uncertainty.covariance;
+      best.covariance_given_rig = best.likelihood.uncertainty.covariance;
       break;
     case RefineMethod::kJoint:
       best.T_camera_lidar = best.joint.T_camera_lidar();
-      best.covariance = best.joint.covariance();
+      best.covariance_given_rig = best.joint.covariance();
       best.scene_note = best.joint.scene.reason;
       break;
+  }
+  best.covariance = best.covariance_given_rig;
+  if (best.likelihood.IsUsable()) {
+    best.covariance +=
+        CovarianceByRigErrors(samples, board, camera, best.likelihood, options.likelihood);
   }
   const bool is_turn_taken_out =
       best.method == RefineMethod::kLikelihood || best.method == RefineMethod::kJoint;

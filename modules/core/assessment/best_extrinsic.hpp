@@ -10,6 +10,7 @@
 #include "core/assessment/joint_extrinsic.hpp"
 #include "core/assessment/scores.hpp"
 #include "core/board/board_sample.hpp"
+#include "core/board/board_spec.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/estimation/average.hpp"
 #include "core/estimation/refine.hpp"
@@ -59,8 +60,12 @@ struct BestExtrinsic {
   std::string problem;  ///< Why there is no extrinsic, a sentence; empty if there is one.
   /// Takes lidar coordinates to camera coordinates: p_camera = T_camera_lidar * p_lidar.
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  /// Of [rotation_rad; translation_m], perturbed on the left (camera side).
+  /// Of [rotation_rad; translation_m], perturbed on the left (camera side): of where the lidar is,
+  /// with the errors that the rig file may have of camera and board (CovarianceByRigErrors)...
   Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /// ...and if it has none: of where points land in this camera's image, and of how the result
+  /// repeats with this rig file, whose small errors make up for one another there.
+  Matrix6d covariance_given_rig = covariance;
   double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();  ///< Of the centres.
   SceneScore held_out;  ///< The chosen method's; all NaN of the average, which holds none out.
   std::vector<MethodTrial> trials;  ///< Average, reprojection, likelihood, joint.
@@ -100,6 +105,7 @@ SceneScore ScoreCorrected(const std::vector<const BoardSample*>& samples,
 /// @param views  of the samples' scenes; may be empty.
 /// @throws std::invalid_argument if `options` has Problems().
 BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
+                         const BoardSpec& board,
                          const CameraModel& camera,
                          const AveragedExtrinsic& average,
                          const std::vector<SceneView>& views,

@@ -64,7 +64,8 @@ struct Diagnosis {
 /// @param samples  those that the result is made from.
 /// @param num_inconsistent  how many others contradict them (FindConsistent).
 /// @param T_camera_lidar  the result...
-/// @param covariance  ...and its own: what moves it less than it says is no finding.
+/// @param covariance  ...and its own, if the rig file is right: what moves it less than it says is
+///     no finding.
 /// @param range_offset  what the result has taken out of the lidar's ranges, if it is observable:
 ///     then it is free in every model compared, and a finding only if no lidar errs so much. Too
 ///     large squares look like too short ranges.

@@ -20,10 +20,12 @@ double IntervalsOf(const Vector6d& move, const Matrix6d& covariance) {
 }
 
 std::string MoveText(const Vector6d& move, const Matrix6d& covariance) {
-  return Format("it moves the result by %.2f deg and %.0f mm, %.1f times its 95 %% interval",
-                kDegPerRad * move.head<3>().norm(),
-                kMmPerM * move.tail<3>().norm(),
-                IntervalsOf(move, covariance));
+  return Format(
+      "it moves the result by %.2f deg and %.0f mm, %.1f times its 95 %% interval with this rig "
+      "file",
+      kDegPerRad * move.head<3>().norm(),
+      kMmPerM * move.tail<3>().norm(),
+      IntervalsOf(move, covariance));
 }
 
 Landing LandingOf(const CameraModel& camera, const Vector6d& move, const JudgedResult& result) {

@@ -27,7 +27,8 @@ inline constexpr double kMostCameraTurnRad = 0.0122173048;
 /// By how many of its 95 % intervals the parameter that moves most moves: NaN if unknown.
 double IntervalsOf(const Vector6d& move, const Matrix6d& covariance);
 
-/// "it moves the result by 0.40 deg and 12 mm, 5.0 times its 95 % interval".
+/// "it moves the result by 0.40 deg and 12 mm, 5.0 times its 95 % interval with this
+/// rig file".
 std::string MoveText(const Vector6d& move, const Matrix6d& covariance);
 
 /// How far lidar points land from where they should: root mean square over the image, 2 to 20 m.

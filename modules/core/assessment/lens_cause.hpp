@@ -21,7 +21,8 @@ struct LensCause {
 };
 
 /// Why images show the pattern, and its corners fit no pose of the board: which answer to
-/// QuestionsAboutLens makes most of them fit, and far better than as it is; of several the one with
+/// QuestionsAboutLens, else to QuestionsAboutNumbers by a lens fitted to these very images, makes
+/// most of them fit, and far better than as it is; of several the one with
 /// the smallest median RMS. No lidar is needed to tell: a plane seen through the wrong lens is
 /// none.
 /// @param views_px    of each image the inner corners, in BoardSpec::InnerCornersBoardM order; NaN:

@@ -138,6 +138,43 @@ std::vector<RigQuestion> QuestionsAboutLens(const CameraModel& camera) {
   return questions;
 }
 
+std::vector<RigQuestion> QuestionsAboutNumbers(const CameraModel& given,
+                                               const CameraModel& fitted) {
+  std::vector<RigQuestion> questions;
+  const auto ask = [&](const char* cause,
+                       const std::string& line,
+                       const std::function<void(CameraModel*)>& take) {
+    CameraModel other = given;
+    take(&other);
+    questions.push_back(AskAbout(cause,
+                                 std::string("the ") + cause + " is wrong",
+                                 "about " + line,
+                                 [other](BoardSpec*, CameraModel* said) { *said = other; }));
+  };
+  ask("focal length fx", Format("camera.fx_px: %.0f", fitted.fx_px), [&](CameraModel* other) {
+    other->fx_px = fitted.fx_px;
+  });
+  ask("focal length fy", Format("camera.fy_px: %.0f", fitted.fy_px), [&](CameraModel* other) {
+    other->fy_px = fitted.fy_px;
+  });
+  ask("focal length",
+      Format("camera.fx_px: %.0f, fy_px: %.0f", fitted.fx_px, fitted.fy_px),
+      [&](CameraModel* other) {
+        other->fx_px = fitted.fx_px;
+        other->fy_px = fitted.fy_px;
+      });
+  ask("principal point",
+      Format("camera.cx_px: %.0f, cy_px: %.0f", fitted.cx_px, fitted.cy_px),
+      [&](CameraModel* other) {
+        other->cx_px = fitted.cx_px;
+        other->cy_px = fitted.cy_px;
+      });
+  ask("distortion", DistortionLine(fitted), [&](CameraModel* other) {
+    other->distortion = fitted.distortion;
+  });
+  return questions;
+}
+
 std::vector<RigQuestion> QuestionsAbout(const BoardSpec& board, const CameraModel& camera) {
   std::vector<RigQuestion> questions = QuestionsAboutLens(camera);
   AskAboutPattern(board, &questions);

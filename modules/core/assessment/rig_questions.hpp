@@ -19,6 +19,10 @@ struct RigQuestion {
 /// Those about the camera alone: its lens model, its coefficients, its images' size.
 std::vector<RigQuestion> QuestionsAboutLens(const CameraModel& camera);
 
+/// What if one of the camera's numbers (a focal length, both, ...) were as a camera fitted to the
+/// images has it?
+std::vector<RigQuestion> QuestionsAboutNumbers(const CameraModel& given, const CameraModel& fitted);
+
 /// Those that make sense of such a board and camera: a sign of an offset that is not zero, ...
 std::vector<RigQuestion> QuestionsAbout(const BoardSpec& board, const CameraModel& camera);
 

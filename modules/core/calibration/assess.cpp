@@ -21,7 +21,8 @@ AveragedPart PartOf(const AveragedExtrinsic& average) {
 Enough EnoughOf(std::size_t num_used, const Calibration& calibration, const CalibrationTask& task) {
   const EnoughOptions& options = task.options.enough;
   const ErrorScene scene(task.camera, calibration.T_camera_lidar, options.tolerance);
-  return JudgeEnough(static_cast<int>(num_used), scene.Worst(calibration.covariance), options);
+  return JudgeEnough(
+      static_cast<int>(num_used), scene.Worst(calibration.covariance_given_rig), options);
 }
 
 /// Lens against lens: another method's scores would be compared with the likelihood's.
@@ -67,6 +68,7 @@ Calibration Assess(const ChosenSamples& chosen,
   Calibration result;
   result.T_camera_lidar = refined.T_camera_lidar;
   result.covariance = refined.covariance;
+  result.covariance_given_rig = refined.covariance_given_rig;
   result.method = refined.method;
   result.scene_note = refined.scene_note;
   result.trials = refined.trials;
@@ -79,7 +81,7 @@ Calibration Assess(const ChosenSamples& chosen,
   result.of_average = ScoreScene(used, camera, average.T_camera_lidar);
   result.held_out_by_cell = BinByImageCell(used, result.held_out, camera);
   result.held_out_by_range = BinByRange(used, result.held_out);
-  result.predicted = PredictErrors(result.T_camera_lidar, result.covariance, camera);
+  result.predicted = PredictErrors(result.T_camera_lidar, result.covariance_given_rig, camera);
   result.enough = EnoughOf(used.size(), result, task);
   const std::array<std::function<void()>, 3> judgements = {
       [&] {
@@ -97,7 +99,7 @@ Calibration Assess(const ChosenSamples& chosen,
                                     task.board,
                                     camera,
                                     result.T_camera_lidar,
-                                    result.covariance,
+                                    result.covariance_given_rig,
                                     result.lidar_bias.common,
                                     task.options.diagnosis);
         AddLikelyCause(chosen, task, &result.diagnosis);

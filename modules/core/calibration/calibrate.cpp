@@ -96,7 +96,8 @@ CalibrationOutcome Calibrate(const std::vector<BoardSample>& samples,
 
   const AveragedExtrinsic& average = outcome.averaged.average;
   const std::vector<SceneView> views = scene_views ? scene_views(used) : std::vector<SceneView>();
-  outcome.refined = RefineBest(used, task.camera, average, views, task.options.refinement);
+  outcome.refined =
+      RefineBest(used, task.board, task.camera, average, views, task.options.refinement);
   outcome.problem = outcome.refined.problem;
   if (!outcome.problem.empty()) return outcome;
 

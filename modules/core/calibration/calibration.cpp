@@ -18,7 +18,7 @@ std::vector<std::string> PartsWithout(const std::vector<ScoreBin>& bins) {
 }
 
 Evidence EvidenceOf(const Calibration& calibration) {
-  const Vector6d sigma = calibration.covariance.diagonal().cwiseSqrt();
+  const Vector6d sigma = calibration.covariance_given_rig.diagonal().cwiseSqrt();
   Evidence evidence;
   evidence.held_out_mm = calibration.held_out.centre_mm.mean;
   evidence.in_sample_mm = calibration.in_sample.centre_mm.mean;

@@ -45,9 +45,11 @@ struct AveragedPart {
 /// Everything that is said of a calibration: what it is, how good, and what it was made from.
 struct Calibration {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  /// Of [rotation_rad; translation_m], perturbed on the left (camera side).
+  /// Of [rotation_rad; translation_m], perturbed on the left (camera side): of where the lidar is,
+  /// with the errors that the rig file may have of camera and board...
   Matrix6d covariance = Matrix6d::Zero();
-  RefineMethod method = RefineMethod::kAverage;  ///< That T_camera_lidar comes from.
+  Matrix6d covariance_given_rig = Matrix6d::Zero();  ///< ...and if it has none.
+  RefineMethod method = RefineMethod::kAverage;      ///< That T_camera_lidar comes from.
   std::string scene_note;           ///< What the scenes have to do with it, a sentence.
   std::vector<MethodTrial> trials;  ///< Every method's scores.
   AveragedPart averaged;

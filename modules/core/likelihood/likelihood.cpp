@@ -120,7 +120,6 @@ std::vector<LikelihoodPose> PosesWithLens(const std::vector<const BoardSample*>&
 
 LikelihoodExtrinsic RefinePoses(std::vector<LikelihoodPose> poses,
                                 const ShadeScale& shades,
-                                const CameraModel& camera,
                                 const Eigen::Isometry3d& T_camera_lidar_start,
                                 const LikelihoodOptions& options) {
   constexpr int kNoiseRounds = 4;    // levels settle to a percent in three...
@@ -147,7 +146,7 @@ LikelihoodExtrinsic RefinePoses(std::vector<LikelihoodPose> poses,
   const SharedEquations equations = search.Equations();
   const Eigen::MatrixXd covariance = search.Covariance(equations);
   refined.T_camera_lidar = search.state().T_camera_lidar;
-  refined.uncertainty = UncertaintyOf(search, equations, camera, options);
+  refined.uncertainty = UncertaintyOf(search, equations);
   refined.bias = BiasOf(search, covariance);
   refined.bias.shades = shades;
   refined.lidar_faults = search.state().faults.head(search.state().NumLidarFaults());
@@ -183,16 +182,12 @@ LikelihoodExtrinsic RefinePosesNearby(std::vector<LikelihoodPose> poses,
 }  // namespace
 
 LikelihoodExtrinsic RefineByLikelihood(const std::vector<const BoardSample*>& samples,
-                                       const CameraModel& camera,
                                        const Eigen::Isometry3d& T_camera_lidar_start,
                                        const LikelihoodOptions& options) {
   RequireUsable("LikelihoodOptions", options.Problems());
   const ShadeScale shades = MakeShadeScale(samples);
-  return RefinePoses(PosesOf(samples, shades, T_camera_lidar_start),
-                     shades,
-                     camera,
-                     T_camera_lidar_start,
-                     options);
+  return RefinePoses(
+      PosesOf(samples, shades, T_camera_lidar_start), shades, T_camera_lidar_start, options);
 }
 
 LikelihoodExtrinsic RefineNearby(const std::vector<const BoardSample*>& samples,
@@ -213,7 +208,6 @@ LikelihoodExtrinsic RefineWithLens(const std::vector<const BoardSample*>& sample
   LikelihoodExtrinsic refined =
       RefinePoses(PosesWithLens(samples, board, camera, shades, T_camera_lidar_start, options),
                   shades,
-                  camera,
                   T_camera_lidar_start,
                   options);
   refined.lens = LensEstimateOf(refined.camera_faults);

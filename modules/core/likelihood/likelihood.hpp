@@ -23,7 +23,6 @@ namespace voqcal {
 /// out of iterations, or a board that is not before both sensors; the transform is then the start.
 /// @throws std::invalid_argument if `options` has Problems().
 LikelihoodExtrinsic RefineByLikelihood(const std::vector<const BoardSample*>& samples,
-                                       const CameraModel& camera,
                                        const Eigen::Isometry3d& T_camera_lidar_start,
                                        const LikelihoodOptions& options);
 

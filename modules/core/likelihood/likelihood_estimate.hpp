@@ -26,7 +26,7 @@ struct LikelihoodNoise {
 };
 
 /// How far the extrinsic may be off, 1 sigma of [rotation_rad; translation_m] perturbed on the left
-/// (camera side), by three ways of telling. Its covariance is the likelihood's, widened for each
+/// (camera side), by two ways of telling. Its covariance is the likelihood's, widened for each
 /// parameter to the largest.
 struct LikelihoodUncertainty {
   /// The inverse information; faults that the data cannot tell count with their priors. In the
@@ -34,8 +34,6 @@ struct LikelihoodUncertainty {
   Vector6d by_likelihood = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
   /// By the poses' own variety (UncertaintyOf).
   Vector6d by_resampling = by_likelihood;
-  /// Estimated again with lens and board in error.
-  Vector6d by_model_errors = by_likelihood;
   Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 

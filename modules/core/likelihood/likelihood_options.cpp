@@ -21,6 +21,11 @@ std::vector<std::string> LikelihoodOptions::Problems() const {
                    "principal_point_error_px must not be negative",
                    principal_point_error_px);
   problems.Require(
+      distortion_error >= 0.0, "distortion_error must not be negative", distortion_error);
+  problems.Require(pattern_offset_error_m >= 0.0,
+                   "pattern_offset_error_m must not be negative",
+                   pattern_offset_error_m);
+  problems.Require(
       board_size_error >= 0.0, "board_size_error must not be negative", board_size_error);
   problems.RequirePositive("lens_error", lens_error);
   problems.RequirePositive("corner_error_px", corner_error_px);

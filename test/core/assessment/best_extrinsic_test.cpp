@@ -32,7 +32,7 @@ BestExtrinsic Best(const std::vector<const BoardSample*>& samples,
                    const std::optional<RefineMethod>& method = {}) {
   RefinerOptions options;
   options.method = method;
-  return RefineBest(samples, test::TestCamera(), RoughAverage(), {}, options);
+  return RefineBest(samples, test::TestBoard(), test::TestCamera(), RoughAverage(), {}, options);
 }
 
 test::SyntheticSamplesOptions NoisyScene(int num_samples) {
@@ -118,7 +118,8 @@ TEST(RefineBest, LeavesAnAverageWhoseErrorIsUnknown) {
   }
   AveragedExtrinsic average = RoughAverage();
   average.T_camera_lidar.pretranslate(Eigen::Vector3d(0, 0, -nearest_m - 0.05));
-  const BestExtrinsic best = RefineBest(all, test::TestCamera(), average, {}, RefinerOptions{});
+  const BestExtrinsic best =
+      RefineBest(all, test::TestBoard(), test::TestCamera(), average, {}, RefinerOptions{});
   ASSERT_TRUE(std::isnan(best.trials[0].ErrorMm()));
   ASSERT_TRUE(best.trials[2].problem.empty()) << best.trials[2].problem;
   EXPECT_NE(best.method, RefineMethod::kAverage);
@@ -194,7 +195,7 @@ TEST(RefinerOptions, NamesProblemsOfItsParts) {
   options.reprojection.huber_px = 0.0;
   options.likelihood.ring_prior_m = 0.0;
   EXPECT_THAT(options.Problems(), SizeIs(2));
-  EXPECT_THROW(RefineBest({}, test::TestCamera(), RoughAverage(), {}, options),
+  EXPECT_THROW(RefineBest({}, test::TestBoard(), test::TestCamera(), RoughAverage(), {}, options),
                std::invalid_argument);
 }
 

@@ -62,6 +62,20 @@ TEST(FindLensCause, NamesTheSizeOfTheImagesThatTheIntrinsicsAreOf) {
   EXPECT_EQ(cause->num_fitting, kNumViews);
 }
 
+TEST(FindLensCause, NamesANumberThatWasTypedWrongly) {
+  CameraModel said = test::TestCamera();
+  said.fy_px *= 1.2;
+  const auto cause = CauseSaid(said, test::TestCamera());
+  ASSERT_TRUE(cause);
+  EXPECT_EQ(cause->cause, "focal length fy");
+  EXPECT_THAT(cause->remedy, StartsWith("give about camera.fy_px: "));
+  said = test::TestCamera();
+  said.distortion[0] += 0.3;
+  const auto other = CauseSaid(said, test::TestCamera());
+  ASSERT_TRUE(other);
+  EXPECT_EQ(other->cause, "distortion");
+}
+
 TEST(FindLensCause, PrefersTheAnswerThatFitsBest) {
   CameraModel pinhole = test::TestCamera();
   pinhole.lens = LensModel::kPlumbBob;

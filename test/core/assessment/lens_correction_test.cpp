@@ -37,7 +37,8 @@ Outcome Correct(const std::vector<BoardSample>& samples) {
   average.T_camera_lidar = test::TestExtrinsic();
   Outcome outcome;
   const auto all = test::Pointers(samples);
-  outcome.given = RefineBest(all, test::TestCamera(), average, {}, RefinerOptions{});
+  outcome.given =
+      RefineBest(all, test::TestBoard(), test::TestCamera(), average, {}, RefinerOptions{});
   outcome.corrected = CorrectLens(all,
                                   test::TestBoard(),
                                   test::TestCamera(),

@@ -45,8 +45,8 @@ TEST(Calibrate, IsItsSteps) {
   const ChosenSamples chosen = ChooseSamples(samples, kTask.camera, kTask.options.consistency);
   const ChosenSets sets = ChooseSets(chosen, kTask);
   const AveragedSets averaged = AverageSets(chosen.Used(), sets.sets, kTask);
-  const BestExtrinsic refined =
-      RefineBest(chosen.Used(), kTask.camera, averaged.average, {}, kTask.options.refinement);
+  const BestExtrinsic refined = RefineBest(
+      chosen.Used(), kTask.board, kTask.camera, averaged.average, {}, kTask.options.refinement);
   EXPECT_EQ(outcome.calibration.T_camera_lidar.matrix(), refined.T_camera_lidar.matrix());
   EXPECT_EQ(outcome.averaged.average.T_camera_lidar.matrix(),
             averaged.average.T_camera_lidar.matrix());

@@ -47,8 +47,7 @@ double LargestEigenvalue(const Matrix6d& difference) {
 TEST(ExtrinsicInformation, IsTheLikelihoods) {
   const std::vector<BoardSample> samples = Samples(12);
   const auto pointers = test::Pointers(samples);
-  const LikelihoodExtrinsic refined =
-      RefineByLikelihood(pointers, test::TestCamera(), test::TestExtrinsic(), {});
+  const LikelihoodExtrinsic refined = RefineByLikelihood(pointers, test::TestExtrinsic(), {});
   ASSERT_TRUE(refined.IsUsable());
   const ExtrinsicInformation information(
       pointers, {refined.T_camera_lidar, refined.bias, refined.noise}, {}, 16);

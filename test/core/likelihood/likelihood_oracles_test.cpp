@@ -173,7 +173,7 @@ std::vector<BoardSample> NoisySession(int num_samples, std::uint32_t seed) {
 }
 
 LikelihoodExtrinsic Refine(const std::vector<const BoardSample*>& samples) {
-  return RefineByLikelihood(samples, test::TestCamera(), Start(), {});
+  return RefineByLikelihood(samples, Start(), {});
 }
 
 TEST(RefineByLikelihood, StandsWhereCeresFindsTheMinimumOfTheSameCost) {

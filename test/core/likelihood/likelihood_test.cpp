@@ -29,7 +29,7 @@ Eigen::Isometry3d RoughStart() {
 }
 
 LikelihoodExtrinsic Refine(const std::vector<BoardSample>& samples) {
-  return RefineByLikelihood(test::Pointers(samples), test::TestCamera(), RoughStart(), {});
+  return RefineByLikelihood(test::Pointers(samples), RoughStart(), {});
 }
 
 // Faults as a VLP-16 has them, and outlines that are seen with errors.
@@ -265,8 +265,7 @@ TEST(LikelihoodOptions, NamesEachProblem) {
   EXPECT_THAT(
       options.Problems(),
       ElementsAre("ring_prior_m must be positive, is 0", "max_iterations must be positive, is 0"));
-  EXPECT_THROW(RefineByLikelihood({}, test::TestCamera(), RoughStart(), options),
-               std::invalid_argument);
+  EXPECT_THROW(RefineByLikelihood({}, RoughStart(), options), std::invalid_argument);
 }
 
 }  // namespace

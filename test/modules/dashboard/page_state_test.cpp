@@ -84,13 +84,18 @@ TEST(SamplesJson, SaysWhatBecameOfIt) {
 
 TEST(ResultJson, HasSigmasInTheOrderOfTheCovariance) {
   extrinsic_refined_t refined{};
-  for (int i = 0; i < 6; ++i) refined.covariance[i][i] = std::pow(1e-3 * (i + 1), 2);
+  for (int i = 0; i < 6; ++i) {
+    refined.covariance_given_rig[i][i] = std::pow(1e-3 * (i + 1), 2);
+    refined.covariance[i][i] = std::pow(1e-2 * (i + 1), 2);
+  }
   refined.T_camera_lidar.quaternion_xyzw[3] = 1;
   assessment_t assessment{};
   assessment.verdict_grade = "bad";
   const Json json = Json::parse(ResultJson(refined, assessment, true, "", {"extrinsic.yaml"}));
   EXPECT_NEAR(json["sigma_deg"][0], 1e-3 * 180 / M_PI, 1e-9);
   EXPECT_NEAR(json["sigma_mm"][2], 6.0, 1e-9);
+  EXPECT_NEAR(json["place_sigma_deg"][0], 1e-2 * 180 / M_PI, 1e-9);
+  EXPECT_NEAR(json["place_sigma_mm"][2], 60.0, 1e-9);
   EXPECT_EQ(json["exports"], Json({"extrinsic.yaml"}));
   EXPECT_EQ(json["verdict"]["grade"], "bad");
 }

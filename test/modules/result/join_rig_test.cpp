@@ -18,7 +18,7 @@ PairSession SessionOfTwo() {
 
 CalibrationResult WithCovariance(const Matrix6d& covariance) {
   CalibrationResult result;
-  result.covariance = covariance;
+  result.covariance_given_rig = covariance;
   return result;
 }
 

@@ -61,6 +61,7 @@ export function showResult(result: Result, folder: string): void {
   setText("translation-sigma", `± ${list(result.sigma_mm!, 1)} mm`);
   setText("quaternion", list(result.quaternion_xyzw!, 5));
   setText("rotation-sigma", `± ${list(result.sigma_deg!, 3)} deg`);
+  setText("place-sigma", `± ${list(result.place_sigma_mm!, 1)} mm, ± ${list(result.place_sigma_deg!, 3)} deg`);
   const { centre_mm, centre_px } = result.held_out!;
   setText(
     "held-out",

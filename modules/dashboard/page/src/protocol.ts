@@ -107,6 +107,9 @@ export interface Result {
   quaternion_xyzw?: Quaternion;
   sigma_deg?: (number | null)[];
   sigma_mm?: (number | null)[];
+  /** Of where the lidar is, as lens and board of the rig file may be off. */
+  place_sigma_deg?: (number | null)[];
+  place_sigma_mm?: (number | null)[];
   held_out?: { centre_px: Spread; centre_mm: Spread };
   predicted?: { range_m: number; corner_mm: number | null }[];
   verdict?: Verdict;

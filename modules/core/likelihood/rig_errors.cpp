@@ -1,0 +1,130 @@
+#include "core/likelihood/rig_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "core/likelihood/camera_faults.hpp"
+#include "core/likelihood/likelihood_search.hpp"
+#include "core/likelihood/likelihood_terms.hpp"
+#include "core/problems.hpp"
+
+namespace voqcal {
+namespace {
+
+using RigErrorMatrix = Eigen::Matrix<double, kNumRigErrors, kNumRigErrors>;
+
+// A larger board is as much farther away; the plate lies where the pattern puts it.
+CameraFaultTerms RigErrorTerms(const BoardSample& sample,
+                               const BoardSpec& board,
+                               const CameraModel& camera,
+                               const RigErrors& sigma,
+                               double corner_error_px) {
+  const CameraFaultTerms of_lens =
+      LensErrorTerms(sample, board, camera, /*lens_error=*/1.0, corner_error_px);
+  const Eigen::Isometry3d T_camera_board = TransformFromPose(sample.camera.pose);
+  CameraFaultTerms terms;
+  terms.board_by_faults.setZero(6, kNumRigErrors);
+  terms.board_by_faults.leftCols<kNumLensErrors>() = of_lens.board_by_faults;
+  terms.board_by_faults.col(kSquares).tail<3>() = T_camera_board.translation();
+  terms.board_by_faults.rightCols<2>().bottomRows<3>() = -T_camera_board.linear().leftCols<2>();
+  terms.information.setZero(kNumRigErrors, kNumRigErrors);
+  terms.information.topLeftCorner<kNumLensErrors, kNumLensErrors>() = of_lens.information;
+  terms.pull.setZero(kNumRigErrors);
+  terms.pull.head<kNumLensErrors>() = of_lens.pull;
+  terms.prior_sigmas = sigma;
+  return terms;
+}
+
+std::vector<LikelihoodPose> PosesWithRigErrors(const std::vector<const BoardSample*>& samples,
+                                               const BoardSpec& board,
+                                               const CameraModel& camera,
+                                               const LikelihoodExtrinsic& refined,
+                                               const RigErrors& sigma,
+                                               double corner_error_px) {
+  std::vector<LikelihoodPose> poses;
+  for (const BoardSample* sample : samples) {
+    poses.push_back(MakeLikelihoodPose(*sample, refined.bias.shades, refined.T_camera_lidar));
+    poses.back().camera_faults = RigErrorTerms(*sample, board, camera, sigma, corner_error_px);
+  }
+  return poses;
+}
+
+CameraFaultEstimates FreeRigErrors() {
+  CameraFaultEstimates faults;
+  faults.values = RigErrors::Zero();
+  faults.is_observable.assign(kNumRigErrors, true);
+  return faults;
+}
+
+// P + m m' by what the data say of the errors (information, and pull at zero) and a prior
+// N(0, t^2 sigma^2). The one scale t is the likeliest, by expectation maximisation (Dempster, Laird
+// and Rubin 1977, "Maximum likelihood from incomplete data via the EM algorithm", Journal of the
+// Royal Statistical Society B 39), but at least 1: few boards may say nothing.
+RigErrorMatrix MeanSquareOf(const RigErrorMatrix& information,
+                            const RigErrors& pull,
+                            const RigErrors& sigma) {
+  constexpr int kMaxRounds = 100;
+  constexpr double kSettledRatio = 1e-3;
+  double t2 = 1.0;
+  RigErrorMatrix mean_square;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const RigErrors prior = (t2 * sigma.cwiseAbs2()).cwiseInverse();
+    const RigErrorMatrix P = (information + RigErrorMatrix(prior.asDiagonal())).inverse();
+    const RigErrors m = P * pull;
+    mean_square = P + m * m.transpose();
+    const double before = t2;
+    t2 = std::max(1.0, mean_square.diagonal().cwiseQuotient(sigma.cwiseAbs2()).mean());
+    if (std::abs(t2 - before) < kSettledRatio * before) break;
+  }
+  return mean_square;
+}
+
+}  // namespace
+
+RigErrors PlausibleRigErrors(const CameraModel& camera, const LikelihoodOptions& options) {
+  RigErrors sigma;
+  sigma[kFocalLength] = options.focal_length_error;
+  sigma[kAspect] = options.focal_length_error;
+  sigma[kPrincipalPointX] = options.principal_point_error_px / LensReachPx(camera);
+  sigma[kPrincipalPointY] = sigma[kPrincipalPointX];
+  sigma[kRadial2] = options.distortion_error;
+  sigma[kRadial4] = options.distortion_error;
+  sigma[kSquares] = options.board_size_error;
+  sigma[kPatternOffsetX] = options.pattern_offset_error_m;
+  sigma[kPatternOffsetY] = options.pattern_offset_error_m;
+  return sigma;
+}
+
+Matrix6d CovarianceByRigErrors(const std::vector<const BoardSample*>& samples,
+                               const BoardSpec& board,
+                               const CameraModel& camera,
+                               const LikelihoodExtrinsic& refined,
+                               const LikelihoodOptions& options) {
+  constexpr double kLeastPrior = 1e-9;  // the search needs one
+  constexpr double kSettled = 1e-6;     // radians or metres
+  RequireUsable("LikelihoodOptions", options.Problems());
+  const RigErrors sigma = PlausibleRigErrors(camera, options).cwiseMax(kLeastPrior);
+  LikelihoodSearch search(
+      PosesWithRigErrors(samples, board, camera, refined, sigma, options.corner_error_px),
+      refined.T_camera_lidar,
+      options);
+  search.StartFrom(refined.bias, FreeRigErrors(), refined.noise);
+  if (!search.Minimise(options.max_iterations, kSettled)) {
+    return Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+  const Eigen::MatrixXd gain = search.Gain(search.Equations().information);
+  const RigErrorMatrix with_prior =
+      gain.bottomRightCorner<kNumRigErrors, kNumRigErrors>().inverse();
+  const RigErrorMatrix of_data =
+      with_prior - RigErrorMatrix(sigma.cwiseAbs2().cwiseInverse().asDiagonal());
+  const Eigen::Matrix<double, 6, kNumRigErrors> J =
+      gain.topRightCorner<6, kNumRigErrors>() * with_prior;
+  const RigErrors pull = with_prior * search.state().CameraFaults();
+  return J * MeanSquareOf(of_data, pull, sigma) * J.transpose();
+}
+
+}  // namespace voqcal

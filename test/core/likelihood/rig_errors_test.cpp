@@ -1,0 +1,106 @@
+#include "core/likelihood/rig_errors.hpp"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/likelihood/likelihood.hpp"
+#include "support/synthetic_lens.hpp"
+#include "support/synthetic_sweeps.hpp"
+
+namespace voqcal {
+namespace {
+
+// Seen through a lens that has `errors` against the one that is given.
+std::vector<BoardSample> SamplesThrough(const LensErrors& errors) {
+  test::SyntheticSamplesOptions scene;
+  scene.num_samples = 20;
+  scene.lidar_centre_noise_m = 0.002;
+  scene.lidar_rotation_noise_rad = 0.003;
+  auto samples = test::SamplesWithSweeps(scene, {0.02, 0.015, 0.008, 0.01});
+  test::SeeThrough(CorrectedCamera(test::TestCamera(), errors), test::TestCamera(), 0.2, &samples);
+  return samples;
+}
+
+struct Refined {
+  LikelihoodExtrinsic likelihood;
+  Matrix6d by_rig_errors;
+
+  Vector6d Error() const {
+    return DifferenceLeft(test::TestExtrinsic(), likelihood.T_camera_lidar);
+  }
+  /// How many standard errors the worst parameter is off by, without and with the rig's errors.
+  double WorstGivenRig() const { return Worst(likelihood.uncertainty.covariance); }
+  double Worst() const { return Worst(likelihood.uncertainty.covariance + by_rig_errors); }
+
+ private:
+  double Worst(const Matrix6d& covariance) const {
+    return Error().cwiseAbs().cwiseQuotient(covariance.diagonal().cwiseSqrt()).maxCoeff();
+  }
+};
+
+Refined Refine(const std::vector<BoardSample>& samples, const BoardSpec& board) {
+  const auto all = test::Pointers(samples);
+  Refined refined;
+  refined.likelihood = RefineByLikelihood(all, test::TestExtrinsic(), {});
+  refined.by_rig_errors =
+      CovarianceByRigErrors(all, board, test::TestCamera(), refined.likelihood, {});
+  return refined;
+}
+
+TEST(CovarianceByRigErrors, HoldsThePrincipalPointThatSamplesDoNotTell) {
+  LensErrors errors = LensErrors::Zero();
+  errors[kPrincipalPointX] = 4.0 / LensReachPx(test::TestCamera());  // 2 sigma
+  const Refined refined = Refine(SamplesThrough(errors), test::TestBoard());
+  ASSERT_TRUE(refined.likelihood.IsUsable());
+  EXPECT_GT(refined.WorstGivenRig(), 3.0);
+  EXPECT_LT(refined.Worst(), 2.5);
+}
+
+TEST(CovarianceByRigErrors, IsAsMuchWiderAsTheSamplesContradictTheLens) {
+  LensErrors errors;
+  errors << 0.02, 0.0, 0.0, 0.0, 0.0, 0.0;  // 20 sigma of what is plausible
+  const Refined refined = Refine(SamplesThrough(errors), test::TestBoard());
+  ASSERT_TRUE(refined.likelihood.IsUsable());
+  EXPECT_GT(refined.WorstGivenRig(), 5.0);
+  EXPECT_LT(refined.Worst(), 2.5);
+}
+
+TEST(CovarianceByRigErrors, IsAboutWhatIsPlausibleWhereNothingIsWrong) {
+  const Refined refined = Refine(SamplesThrough(LensErrors::Zero()), test::TestBoard());
+  ASSERT_TRUE(refined.likelihood.IsUsable());
+  const double turn_rad = LikelihoodOptions{}.principal_point_error_px / test::TestCamera().fx_px;
+  const Vector6d sigma = refined.by_rig_errors.diagonal().cwiseSqrt();
+  EXPECT_LT(sigma.head<3>().maxCoeff(), 1.5 * turn_rad);
+  EXPECT_GT(sigma[1], 0.2 * turn_rad);  // cx, about y
+}
+
+TEST(CovarianceByRigErrors, KnowsOfTheBoardWhereThereAreNoCorners) {
+  auto samples = SamplesThrough(LensErrors::Zero());
+  for (BoardSample& sample : samples) sample.camera.corners_px.clear();
+  const Refined refined = Refine(samples, test::TestBoard());
+  ASSERT_TRUE(refined.likelihood.IsUsable());
+  const LikelihoodOptions options;
+  const double sigma_m = std::sqrt(refined.by_rig_errors.bottomRightCorner<3, 3>().trace());
+  EXPECT_GT(sigma_m, 0.3 * options.pattern_offset_error_m);
+  EXPECT_LT(sigma_m, 10 * options.pattern_offset_error_m);
+}
+
+TEST(CovarianceByRigErrors, IsNearlyNothingOfARigFileThatIsExact) {
+  LikelihoodOptions exact;
+  exact.focal_length_error = exact.principal_point_error_px = exact.distortion_error = 0;
+  exact.board_size_error = exact.pattern_offset_error_m = 0;
+  const auto samples = SamplesThrough(LensErrors::Zero());
+  const auto all = test::Pointers(samples);
+  const Matrix6d covariance =
+      CovarianceByRigErrors(all,
+                            test::TestBoard(),
+                            test::TestCamera(),
+                            RefineByLikelihood(all, test::TestExtrinsic(), exact),
+                            exact);
+  EXPECT_LT(std::sqrt(covariance.diagonal().maxCoeff()), 1e-5);
+}
+
+}  // namespace
+}  // namespace voqcal

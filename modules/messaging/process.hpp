@@ -27,7 +27,7 @@ struct ProcessArgs {
 
 /// The frame of every main(): reads the flags, sends spdlog to stderr under the module's name, runs
 /// `body`, and prints its exception (PrintError). Memory that is freed stays with the process for
-/// what comes next: up to 64 MB of each thread.
+/// what comes next, at most 64 MB at the end of the heap.
 ///
 /// @return the exit status: 0 when `body` returns (also after --help and --version); 1 when it
 ///     throws; 2 for flags that cannot be understood.

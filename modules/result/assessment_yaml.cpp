@@ -63,7 +63,8 @@ std::string BinsYaml(const std::string& name, const std::vector<ScoreBin>& bins)
 
 std::string PredictedYaml(const std::vector<PredictedError>& predicted) {
   std::string text =
-      "# RMS error of a lidar point in the image, by the covariance: in the middle of the image, "
+      "# RMS error of a lidar point in the image, by covariance_given_rig: in the middle of the "
+      "image, "
       "and in the\n"
       "# worst of its corners\n"
       "predicted_errors:" +

@@ -142,7 +142,8 @@ std::string JointCovarianceYaml(const SensorNetwork& network) {
          "then\n"
          "# translation_m, perturbed on the left (reference) side; those of the reference are 0\n"
          "covariance_of: [" +
-         names + "]\ncovariance:\n" + RowsYaml(network.covariance, "  ");
+         names + "]\ncovariance:  # if the rig file's cameras and board are exactly right\n" +
+         RowsYaml(network.covariance, "  ");
 }
 
 /// What is said of the pair by itself.

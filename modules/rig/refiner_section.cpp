@@ -66,7 +66,8 @@ void ReadLikelihood(OptionSection* refiner, LikelihoodOptions* options) {
       "width by which it moves a point there...");
   section.Read("corner_error_px",
                &options->corner_error_px,
-               "...and a chessboard's corner, neighbours erring alike");
+               "...and, for what the rig file may be off by too, a chessboard's corner, neighbours "
+               "erring alike");
   section.Read("max_iterations", &options->max_iterations, "of the fit");
   CheckAndClose(*options, &section);
 }

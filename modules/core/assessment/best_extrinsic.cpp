@@ -304,9 +304,9 @@ BestExtrinsic RefineBest(const std::vector<const BoardSample*>& samples,
       best.scene_note = best.joint.scene.reason;
       break;
   }
-  best.covariance = best.covariance_given_rig;
-  if (best.likelihood.IsUsable()) {
-    best.covariance +=
+  if (best.likelihood.IsUsable()) {  // else it is not known what the rig file's errors do
+    best.covariance =
+        best.covariance_given_rig +
         CovarianceByRigErrors(samples, board, camera, best.likelihood, options.likelihood);
   }
   const bool is_turn_taken_out =

@@ -61,7 +61,8 @@ struct BestExtrinsic {
   /// Takes lidar coordinates to camera coordinates: p_camera = T_camera_lidar * p_lidar.
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
   /// Of [rotation_rad; translation_m], perturbed on the left (camera side): of where the lidar is,
-  /// with the errors that the rig file may have of camera and board (CovarianceByRigErrors)...
+  /// with the errors that the rig file may have of camera and board (CovarianceByRigErrors); NaN
+  /// where the likelihood does not tell what they do...
   Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
   /// ...and if it has none: of where points land in this camera's image, and of how the result
   /// repeats with this rig file, whose small errors make up for one another there.

@@ -22,7 +22,7 @@ struct Enough {
   std::string words;  ///< "Enough: 4.2 mm at worst, at 5 m; 5 mm are asked."
 };
 
-/// @param worst  predicted by the extrinsic's published covariance.
+/// @param worst  predicted by the extrinsic's covariance_given_rig.
 Enough JudgeEnough(int num_samples, const WorstError& worst, const EnoughOptions& options);
 
 }  // namespace voqcal

@@ -29,7 +29,7 @@ std::vector<double> RmsPx(const Views& views_px,
 }
 
 // Views that do not fit the camera.
-struct Plight {
+struct UnfittingViews {
   const Views& views_px;
   const BoardSpec& board;
   const CameraModel& camera;
@@ -37,23 +37,25 @@ struct Plight {
 };
 
 // The answer by which most fit, and far better than as it is, with the smallest median.
-std::optional<LensCause> BestOf(const std::vector<RigQuestion>& questions, const Plight& plight) {
+std::optional<LensCause> BestOf(const std::vector<RigQuestion>& questions,
+                                const UnfittingViews& unfitting) {
   constexpr double kLeastShare = 0.7;  // a few views may be spoilt by something else
   // Of the RMS as it is: a lens that is nearly the right one, or a bent board, is a little better
   // through many another lens.
   constexpr double kMostOfBefore = 1.0 / 3;
-  double smallest_px = kMostOfBefore * Median(RmsPx(plight.views_px, plight.board, plight.camera));
+  double smallest_px =
+      kMostOfBefore * Median(RmsPx(unfitting.views_px, unfitting.board, unfitting.camera));
   std::optional<LensCause> best;
   for (const RigQuestion& question : questions) {
-    GivenSession other{plight.board, plight.camera, {}};
+    GivenSession other{unfitting.board, unfitting.camera, {}};
     question.undo(&other);
-    const std::vector<double> rms_px = RmsPx(plight.views_px, other.board, other.camera);
+    const std::vector<double> rms_px = RmsPx(unfitting.views_px, other.board, other.camera);
     const auto num_fitting =
         static_cast<std::size_t>(std::count_if(rms_px.begin(), rms_px.end(), [&](double each_px) {
-          return each_px <= plight.max_rms_px;
+          return each_px <= unfitting.max_rms_px;
         }));
     const bool fit_most = static_cast<double>(num_fitting) >=
-                          kLeastShare * static_cast<double>(plight.views_px.size());
+                          kLeastShare * static_cast<double>(unfitting.views_px.size());
     const double median_px = Median(rms_px);
     if (!fit_most || !(median_px < smallest_px)) continue;
     smallest_px = median_px;
@@ -66,7 +68,7 @@ std::optional<LensCause> BestOf(const std::vector<RigQuestion>& questions, const
 std::optional<CameraModel> FittedCamera(const Views& views_px,
                                         const BoardSpec& board,
                                         const CameraModel& camera) {
-  constexpr double kHugePx = 2.0;
+  constexpr double kHugePx = 2.0;  // a few views may be spoilt by something else
   std::vector<LensView> views;
   for (const std::vector<Eigen::Vector2d>& corners_px : views_px) {
     views.push_back({static_cast<std::int64_t>(views.size()), corners_px, 0.0});
@@ -87,10 +89,10 @@ std::optional<LensCause> FindLensCause(const Views& views_px,
                                        double max_rms_px) {
   constexpr std::size_t kFewestViews = 5;
   if (views_px.size() < kFewestViews) return {};
-  const Plight plight{views_px, board, camera, max_rms_px};
-  if (const auto kind = BestOf(QuestionsAboutLens(camera), plight)) return kind;
+  const UnfittingViews unfitting{views_px, board, camera, max_rms_px};
+  if (const auto kind = BestOf(QuestionsAboutLens(camera), unfitting)) return kind;
   const auto fitted = FittedCamera(views_px, board, camera);
-  return fitted ? BestOf(QuestionsAboutNumbers(camera, *fitted), plight) : std::nullopt;
+  return fitted ? BestOf(QuestionsAboutNumbers(camera, *fitted), unfitting) : std::nullopt;
 }
 
 }  // namespace voqcal

@@ -14,7 +14,7 @@ constexpr float kMaxContrastRatio = 3.0F;  // light changes slowly over a board
 // in rows, over which the compiler vectorises.
 class Candidates {
  public:
-  explicit Candidates(const std::vector<XCorner>& corners) : is_near_(corners.size()) {
+  explicit Candidates(const std::vector<XCorner>& corners) : may_join_(corners.size()) {
     for (const XCorner& corner : corners) {
       x_.push_back(corner.position_px.x);
       y_.push_back(corner.position_px.y);
@@ -30,8 +30,8 @@ class Candidates {
   const std::vector<int>& Of(const XCorner& from) {
     Mark(from);
     indices_.clear();
-    for (std::size_t i = 0; i < is_near_.size(); ++i) {
-      if (is_near_[i] != 0) indices_.push_back(static_cast<int>(i));
+    for (std::size_t i = 0; i < may_join_.size(); ++i) {
+      if (may_join_[i] != 0) indices_.push_back(static_cast<int>(i));
     }
     return indices_;
   }
@@ -46,7 +46,7 @@ class Candidates {
       return sine(ax, ay, bx, by) < kSlack * kMaxTangent * std::abs(ax * bx + ay * by);
     };
     const auto [a, b] = from.axes;
-    for (std::size_t i = 0; i < is_near_.size(); ++i) {
+    for (std::size_t i = 0; i < may_join_.size(); ++i) {
       const float x = x_[i] - from.position_px.x;
       const float y = y_[i] - from.position_px.y;
       const float ax = axis_x_[0][i], ay = axis_y_[0][i];
@@ -55,13 +55,13 @@ class Candidates {
                               (sine(b.x, b.y, ax, ay) < kSlack * kMaxSine);
       const bool is_along_b = is_along(x, y, b.x, b.y) & is_along(x, y, ax, ay) &
                               (sine(a.x, a.y, bx, by) < kSlack * kMaxSine);
-      is_near_[i] = is_along_a | is_along_b ? 1 : 0;
+      may_join_[i] = is_along_a | is_along_b ? 1 : 0;
     }
   }
 
   std::vector<float> x_, y_;
   std::array<std::vector<float>, 2> axis_x_, axis_y_;
-  std::vector<int> is_near_;
+  std::vector<int> may_join_;
   std::vector<int> indices_;
 };
 

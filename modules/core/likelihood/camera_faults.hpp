@@ -11,8 +11,8 @@
 namespace voqcal {
 
 /// What one chessboard says of faults of the camera that all chessboards share, to first order:
-/// either all of LensErrors (LensErrorTerms) or the turn that stands for them
-/// (ChessboardTurnTerms). With pixel errors
+/// all of LensErrors (LensErrorTerms), these and the board's (CovarianceByRigErrors), or the turn
+/// that stands for the lens (ChessboardTurnTerms). With pixel errors
 ///     e(p, l) = e0 + J p + L l
 /// of all corners by the board's pose p (left perturbation) and the faults l, the pose with the
 /// least squares moves by S l, S = -(J'J)^-1 J'L, and what is left of the corners' errors is
@@ -22,7 +22,7 @@ struct CameraFaultTerms {
   Eigen::Matrix<double, 6, Eigen::Dynamic> board_by_faults;  ///< S.
   Eigen::MatrixXd information;                               ///< Of l, by what is left...
   Eigen::VectorXd pull;                                      ///< ...minus its gradient at l = 0.
-  Eigen::VectorXd prior_sigmas;  ///< Of l: shares (LensErrors) or radians (the turn).
+  Eigen::VectorXd prior_sigmas;  ///< Of l: shares, metres (pattern) or radians (the turn).
 
   Eigen::Index NumFaults() const { return pull.size(); }
 };

@@ -26,8 +26,8 @@ struct LikelihoodNoise {
 };
 
 /// How far the extrinsic may be off, 1 sigma of [rotation_rad; translation_m] perturbed on the left
-/// (camera side), by two ways of telling. Its covariance is the likelihood's, widened for each
-/// parameter to the largest.
+/// (camera side) if the rig file is right, by two ways of telling. Its covariance is the
+/// likelihood's, widened for each parameter to the larger.
 struct LikelihoodUncertainty {
   /// The inverse information; faults that the data cannot tell count with their priors. In the
   /// covariance it is wider the fewer poses told the noise levels.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include <Eigen/LU>
 
@@ -17,14 +16,36 @@ namespace {
 
 using RigErrorMatrix = Eigen::Matrix<double, kNumRigErrors, kNumRigErrors>;
 
+// How a chessboard's pose follows the lens, and what its corners tell of that. Of a sample without
+// pixels (a table's) the pose follows as if they had been seen, but they tell nothing.
+CameraFaultTerms LensTerms(const BoardSample& sample,
+                           const BoardSpec& board,
+                           const CameraModel& camera,
+                           double corner_error_px) {
+  constexpr double kAnyPrior = 1.0;
+  if (!sample.camera.corners_px.empty()) {
+    return LensErrorTerms(sample, board, camera, kAnyPrior, corner_error_px);
+  }
+  BoardSample as_if_seen;
+  as_if_seen.camera = sample.camera;
+  const Eigen::Isometry3d T_camera_board = TransformFromPose(sample.camera.pose);
+  for (const Eigen::Vector3d& corner_m : board.InnerCornersBoardM()) {
+    as_if_seen.camera.corners_px.emplace_back(
+        camera.Project(Eigen::Vector3d(T_camera_board * corner_m)));
+  }
+  CameraFaultTerms terms = LensErrorTerms(as_if_seen, board, camera, kAnyPrior, corner_error_px);
+  terms.information.setZero();
+  terms.pull.setZero();
+  return terms;
+}
+
 // A larger board is as much farther away; the plate lies where the pattern puts it.
 CameraFaultTerms RigErrorTerms(const BoardSample& sample,
                                const BoardSpec& board,
                                const CameraModel& camera,
                                const RigErrors& sigma,
                                double corner_error_px) {
-  const CameraFaultTerms of_lens =
-      LensErrorTerms(sample, board, camera, /*lens_error=*/1.0, corner_error_px);
+  const CameraFaultTerms of_lens = LensTerms(sample, board, camera, corner_error_px);
   const Eigen::Isometry3d T_camera_board = TransformFromPose(sample.camera.pose);
   CameraFaultTerms terms;
   terms.board_by_faults.setZero(6, kNumRigErrors);
@@ -61,24 +82,28 @@ CameraFaultEstimates FreeRigErrors() {
 }
 
 // P + m m' by what the data say of the errors (information, and pull at zero) and a prior
-// N(0, t^2 sigma^2). The one scale t is the likeliest, by expectation maximisation (Dempster, Laird
-// and Rubin 1977, "Maximum likelihood from incomplete data via the EM algorithm", Journal of the
-// Royal Statistical Society B 39), but at least 1: few boards may say nothing.
+// N(0, t^2 sigma^2). The scales t, one of the lens' errors and one of the board's, are the
+// likeliest, by expectation maximisation (Dempster, Laird and Rubin 1977, "Maximum likelihood from
+// incomplete data via the EM algorithm", Journal of the Royal Statistical Society B 39), but at
+// least 1: few boards may say nothing.
 RigErrorMatrix MeanSquareOf(const RigErrorMatrix& information,
                             const RigErrors& pull,
                             const RigErrors& sigma) {
-  constexpr int kMaxRounds = 100;
+  constexpr int kMaxRounds = 200;  // it nears its end ever more slowly, from below
   constexpr double kSettledRatio = 1e-3;
-  double t2 = 1.0;
+  constexpr Eigen::Index kNumBoardErrors = kNumRigErrors - kNumLensErrors;
+  RigErrors t2 = RigErrors::Ones();
   RigErrorMatrix mean_square;
   for (int round = 0; round < kMaxRounds; ++round) {
-    const RigErrors prior = (t2 * sigma.cwiseAbs2()).cwiseInverse();
+    const RigErrors prior = t2.cwiseProduct(sigma.cwiseAbs2()).cwiseInverse();
     const RigErrorMatrix P = (information + RigErrorMatrix(prior.asDiagonal())).inverse();
     const RigErrors m = P * pull;
     mean_square = P + m * m.transpose();
-    const double before = t2;
-    t2 = std::max(1.0, mean_square.diagonal().cwiseQuotient(sigma.cwiseAbs2()).mean());
-    if (std::abs(t2 - before) < kSettledRatio * before) break;
+    const RigErrors before = t2;
+    const RigErrors found = mean_square.diagonal().cwiseQuotient(sigma.cwiseAbs2());
+    t2.head<kNumLensErrors>().setConstant(std::max(1.0, found.head<kNumLensErrors>().mean()));
+    t2.tail<kNumBoardErrors>().setConstant(std::max(1.0, found.tail<kNumBoardErrors>().mean()));
+    if ((t2 - before).cwiseAbs().cwiseQuotient(before).maxCoeff() < kSettledRatio) break;
   }
   return mean_square;
 }
@@ -88,7 +113,7 @@ RigErrorMatrix MeanSquareOf(const RigErrorMatrix& information,
 RigErrors PlausibleRigErrors(const CameraModel& camera, const LikelihoodOptions& options) {
   RigErrors sigma;
   sigma[kFocalLength] = options.focal_length_error;
-  sigma[kAspect] = options.focal_length_error;
+  sigma[kAspect] = 0.5 * options.focal_length_error;  // fx longer by it, fy shorter
   sigma[kPrincipalPointX] = options.principal_point_error_px / LensReachPx(camera);
   sigma[kPrincipalPointY] = sigma[kPrincipalPointX];
   sigma[kRadial2] = options.distortion_error;
@@ -113,7 +138,7 @@ Matrix6d CovarianceByRigErrors(const std::vector<const BoardSample*>& samples,
       refined.T_camera_lidar,
       options);
   search.StartFrom(refined.bias, FreeRigErrors(), refined.noise);
-  if (!search.Minimise(options.max_iterations, kSettled)) {
+  if (!search.Minimise(options.max_iterations, kSettled) || !search.IsPhysical()) {
     return Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
   const Eigen::MatrixXd gain = search.Gain(search.Equations().information);
@@ -124,7 +149,8 @@ Matrix6d CovarianceByRigErrors(const std::vector<const BoardSample*>& samples,
   const Eigen::Matrix<double, 6, kNumRigErrors> J =
       gain.topRightCorner<6, kNumRigErrors>() * with_prior;
   const RigErrors pull = with_prior * search.state().CameraFaults();
-  return J * MeanSquareOf(of_data, pull, sigma) * J.transpose();
+  const Matrix6d covariance = J * MeanSquareOf(of_data, pull, sigma) * J.transpose();
+  return 0.5 * (covariance + covariance.transpose());
 }
 
 }  // namespace voqcal

@@ -14,7 +14,7 @@
 
 namespace voqcal {
 
-/// Errors of what a rig file says of camera and board: after LensErrors
+/// Errors of what a rig file says of camera and board: LensErrors, and after them the board's.
 enum RigError : Eigen::Index {
   kSquares = kNumLensErrors,  ///< The true squares are (1 + value) times those given.
   kPatternOffsetX,            ///< The true pattern is off by this along the plate's x, metres...
@@ -28,14 +28,16 @@ RigErrors PlausibleRigErrors(const CameraModel& camera, const LikelihoodOptions&
 
 /// By how much the errors that the rig file may have widen an extrinsic that is refined as if it
 /// had none: of [rotation_rad; translation_m], perturbed on the left (camera) side. The errors l
-/// are normal around zero beforehand, as wide as plausible, or as much wider as the boards ask for.
-/// The boards say of them the mean m and covariance P, and the extrinsic follows them by J:
+/// are normal around zero beforehand, as wide as plausible (PlausibleRigErrors), or, the lens' and
+/// the board's each, as much wider as the samples ask for. The samples then say of them the mean m
+/// and the covariance P, and the extrinsic follows them by J:
 ///     J (P + m m') J'
-/// which holds the extrinsic of another lens, too, where the boards contradict the one that is
-/// given. Lens errors need the corners' pixels.
+/// Where the samples ask for another lens, the interval reaches to the extrinsic that goes with it.
+/// The chessboards' turn, which stands for the lens where no errors of it are asked for, is none of
+/// the unknowns here.
 ///
 /// @param refined  as if the rig file had no errors: the start, its noise levels and lidar faults.
-/// @return NaN where they do not tell.
+/// @return NaN where the search fails.
 /// @throws std::invalid_argument if `options` has Problems().
 Matrix6d CovarianceByRigErrors(const std::vector<const BoardSample*>& samples,
                                const BoardSpec& board,

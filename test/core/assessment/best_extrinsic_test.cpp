@@ -96,16 +96,34 @@ TEST(RefineBest, IsWideOfThreePoses) {
   const auto samples = test::SamplesWithSweeps(NoisyScene(3), kFaults);
   const BestExtrinsic best = Best(test::Pointers(samples));
   EXPECT_EQ(best.method, RefineMethod::kJoint);
-  EXPECT_GT(best.covariance(5, 5), 0.01 * 0.01);
-  EXPECT_LT(best.covariance(5, 5), 0.04 * 0.04);
+  EXPECT_GT(best.covariance_given_rig(5, 5), 0.01 * 0.01);
+  EXPECT_LT(best.covariance_given_rig(5, 5), 0.04 * 0.04);
+}
+
+TEST(RefineBest, SaysWhereTheLidarIsLessSurelyThanWhereItsPointsLand) {
+  const auto samples = test::SamplesWithSweeps(NoisyScene(20), kFaults);
+  for (const RefineMethod method : {RefineMethod::kAverage, RefineMethod::kJoint}) {
+    const BestExtrinsic best = Best(test::Pointers(samples), method);
+    const Matrix6d by_rig = best.covariance - best.covariance_given_rig;
+    EXPECT_GT(by_rig.diagonal().minCoeff(), 0) << ToString(method);
+    EXPECT_GT(by_rig(1, 1), std::pow(0.2 * 2.0 / test::TestCamera().fx_px, 2));  // 2 px of cx
+  }
+}
+
+TEST(RefineBest, DoesNotKnowWhereTheLidarIsWithoutALikelihood) {
+  const auto samples = test::SynthesizeSamples(NoisyScene(20));
+  const BestExtrinsic best = Best(test::Pointers(samples));
+  ASSERT_TRUE(best.IsUsable()) << best.problem;
+  EXPECT_TRUE(best.covariance_given_rig.allFinite());
+  EXPECT_TRUE(best.covariance.array().isNaN().all());
 }
 
 TEST(RefineBest, OfAnAverageHasTheSpreadAndTheLidarsOffset) {
   const auto samples = test::SynthesizeSamples(NoisyScene(4));
   const BestExtrinsic best = Best(test::Pointers(samples), RefineMethod::kAverage);
   EXPECT_EQ(best.T_camera_lidar.matrix(), RoughAverage().T_camera_lidar.matrix());
-  EXPECT_GT(best.covariance(5, 5), 0.02 * 0.02);
-  EXPECT_LT(best.covariance(3, 3), best.covariance(5, 5));
+  EXPECT_GT(best.covariance_given_rig(5, 5), 0.02 * 0.02);
+  EXPECT_LT(best.covariance_given_rig(3, 3), best.covariance_given_rig(5, 5));
 }
 
 // Boards behind the camera have no error in the image, and then neither has the mean over all.
@@ -169,7 +187,7 @@ TEST_P(RefineBestWithWrongSamples, StaysWithinItsInterval) {
   const Vector6d error = DifferenceLeft(test::TestExtrinsic(), best.T_camera_lidar);
   // Three standard deviations: one of 18 numbers is beyond with a chance of 5 %, seeds are fixed.
   for (int i = 0; i < 6; ++i) {
-    EXPECT_LT(std::abs(error[i]), 3.0 * std::sqrt(best.covariance(i, i))) << i;
+    EXPECT_LT(std::abs(error[i]), 3.0 * std::sqrt(best.covariance_given_rig(i, i))) << i;
   }
 }
 

@@ -76,15 +76,41 @@ TEST(CovarianceByRigErrors, IsAboutWhatIsPlausibleWhereNothingIsWrong) {
   EXPECT_GT(sigma[1], 0.2 * turn_rad);  // cx, about y
 }
 
-TEST(CovarianceByRigErrors, KnowsOfTheBoardWhereThereAreNoCorners) {
-  auto samples = SamplesThrough(LensErrors::Zero());
+TEST(CovarianceByRigErrors, IsNoSmallerWhereNoCornersTell) {
+  const auto with_corners = SamplesThrough(LensErrors::Zero());
+  auto samples = with_corners;
   for (BoardSample& sample : samples) sample.camera.corners_px.clear();
-  const Refined refined = Refine(samples, test::TestBoard());
-  ASSERT_TRUE(refined.likelihood.IsUsable());
-  const LikelihoodOptions options;
-  const double sigma_m = std::sqrt(refined.by_rig_errors.bottomRightCorner<3, 3>().trace());
-  EXPECT_GT(sigma_m, 0.3 * options.pattern_offset_error_m);
-  EXPECT_LT(sigma_m, 10 * options.pattern_offset_error_m);
+  const Vector6d with = Refine(with_corners, test::TestBoard()).by_rig_errors.diagonal();
+  const Vector6d without = Refine(samples, test::TestBoard()).by_rig_errors.diagonal();
+  EXPECT_GT(without.cwiseQuotient(with).minCoeff(), 0.9);
+}
+
+// The squares' error is the only one: the board is as much farther away.
+TEST(CovarianceByRigErrors, MovesAsARefinementWithOtherSquaresDoes) {
+  LikelihoodOptions options;
+  options.focal_length_error = options.principal_point_error_px = options.distortion_error = 0;
+  options.pattern_offset_error_m = 0;
+  options.board_size_error = 0.002;
+  const auto samples = SamplesThrough(LensErrors::Zero());
+  auto larger = samples;
+  for (BoardSample& sample : larger) {
+    Eigen::Isometry3d T_camera_board = TransformFromPose(sample.camera.pose);
+    T_camera_board.translation() *= 1.0 + options.board_size_error;
+    const Matrix6d covariance = sample.camera.pose.covariance;
+    sample.camera.pose = PoseFromTransform(T_camera_board, test::TestBoard());
+    sample.camera.pose.covariance = covariance;
+  }
+  const auto all = test::Pointers(samples);
+  const LikelihoodExtrinsic refined = RefineByLikelihood(all, test::TestExtrinsic(), options);
+  const LikelihoodExtrinsic moved =
+      RefineByLikelihood(test::Pointers(larger), test::TestExtrinsic(), options);
+  const Matrix6d covariance =
+      CovarianceByRigErrors(all, test::TestBoard(), test::TestCamera(), refined, options);
+  const double along_view_m =
+      DifferenceLeft(refined.T_camera_lidar, moved.T_camera_lidar).tail<3>().norm();
+  const double sigma_m = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  EXPECT_GT(along_view_m, 0.5 * sigma_m);
+  EXPECT_LT(along_view_m, 2.0 * sigma_m);
 }
 
 TEST(CovarianceByRigErrors, IsNearlyNothingOfARigFileThatIsExact) {

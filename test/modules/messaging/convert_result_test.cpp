@@ -121,6 +121,7 @@ TEST(RefinedMessage, ComesBack) {
   best.method = RefineMethod::kLikelihood;
   best.T_camera_lidar = Transform(0.3);
   for (int i = 0; i < 36; ++i) best.covariance(i / 6, i % 6) = 1.0 / (3.0 + i);
+  best.covariance_given_rig = 0.1 * best.covariance;
   best.reprojection_rms_px = 1.0 / 3.0;
   best.held_out.poses.resize(kIds.size());
   best.held_out.poses[1] = {0.25, 0.5, 1.0, 2.0};
@@ -137,6 +138,8 @@ TEST(RefinedMessage, ComesBack) {
   const BestExtrinsic back = FromMessage(message);
   EXPECT_EQ(back.method, best.method);
   EXPECT_EQ(back.covariance, best.covariance);
+  EXPECT_EQ(back.covariance_given_rig, best.covariance_given_rig);
+  EXPECT_EQ(back.likelihood.uncertainty.covariance, best.covariance_given_rig);
   EXPECT_EQ(back.reprojection_rms_px, best.reprojection_rms_px);
   EXPECT_EQ(back.held_out.poses[1].corner_mm, 1.0);
   EXPECT_EQ(back.trials.at(0).problem, "none");

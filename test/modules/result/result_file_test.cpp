@@ -22,6 +22,7 @@ CalibrationResult SomeResult() {
                           Eigen::AngleAxisd(3.0, Eigen::Vector3d(1, -2, 3).normalized());
   result.covariance = Matrix6d::Identity() * 1e-6;
   result.covariance(0, 5) = result.covariance(5, 0) = 1.0 / 7;
+  result.covariance_given_rig = 0.1 * result.covariance;
   result.averaged.T_camera_lidar = Eigen::Translation3d(1, 2, 3) * Eigen::Quaterniond::Identity();
   result.averaged.spread << 1, 2, 3, 4, 5, 6;
   result.averaged.num_sets = 50;
@@ -49,6 +50,7 @@ TEST(ToYaml, IsReadBackExactly) {
   }
   for (int i = 0; i < 6; ++i) {
     EXPECT_EQ(yaml["covariance"][i][5].as<double>(), result.covariance(i, 5));
+    EXPECT_EQ(yaml["covariance_given_rig"][i][5].as<double>(), result.covariance_given_rig(i, 5));
     EXPECT_EQ(yaml["averaged"]["spread"][i].as<double>(), i + 1);
   }
   EXPECT_EQ(yaml["averaged"]["num_sets_kept"].as<int>(), 41);

@@ -48,9 +48,8 @@ std::string TransformLines(const CalibrationResult& result) {
          Format(
              "  quaternion_xyzw  %9.6f %9.6f %9.6f %9.6f   1 sigma ", q.x(), q.y(), q.z(), q.w()) +
          TurnSigma(result.covariance_given_rig) +
-         "\n  that is with this rig file as it is; of the lidar's place, as its lens and board may "
-         "be "
-         "off: 1 sigma " +
+         "\n  with this rig file as it is; the lidar's place, as its lens and board may be off: 1 "
+         "sigma " +
          ShiftSigma(result.covariance) + ", " + TurnSigma(result.covariance) + "\n";
 }
 

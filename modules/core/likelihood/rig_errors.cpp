@@ -16,6 +16,10 @@ namespace {
 
 using RigErrorMatrix = Eigen::Matrix<double, kNumRigErrors, kNumRigErrors>;
 
+// The rig file's errors, and after them the chessboards' turn, which is unknown as it was in the
+// refinement.
+constexpr Eigen::Index kNumUnknowns = kNumRigErrors + kNumChessboardTurns;
+
 // How a chessboard's pose follows the lens, and what its corners tell of that. Of a sample without
 // pixels (a table's) the pose follows as if they had been seen, but they tell nothing.
 CameraFaultTerms LensTerms(const BoardSample& sample,
@@ -47,16 +51,19 @@ CameraFaultTerms RigErrorTerms(const BoardSample& sample,
                                double corner_error_px) {
   const CameraFaultTerms of_lens = LensTerms(sample, board, camera, corner_error_px);
   const Eigen::Isometry3d T_camera_board = TransformFromPose(sample.camera.pose);
+  const CameraFaultTerms of_turn = ChessboardTurnTerms();
   CameraFaultTerms terms;
-  terms.board_by_faults.setZero(6, kNumRigErrors);
+  terms.board_by_faults.setZero(6, kNumUnknowns);
   terms.board_by_faults.leftCols<kNumLensErrors>() = of_lens.board_by_faults;
   terms.board_by_faults.col(kSquares).tail<3>() = T_camera_board.translation();
-  terms.board_by_faults.rightCols<2>().bottomRows<3>() = -T_camera_board.linear().leftCols<2>();
-  terms.information.setZero(kNumRigErrors, kNumRigErrors);
+  terms.board_by_faults.block<3, 2>(3, kPatternOffsetX) = -T_camera_board.linear().leftCols<2>();
+  terms.board_by_faults.rightCols<kNumChessboardTurns>() = of_turn.board_by_faults;
+  terms.information.setZero(kNumUnknowns, kNumUnknowns);
   terms.information.topLeftCorner<kNumLensErrors, kNumLensErrors>() = of_lens.information;
-  terms.pull.setZero(kNumRigErrors);
+  terms.pull.setZero(kNumUnknowns);
   terms.pull.head<kNumLensErrors>() = of_lens.pull;
-  terms.prior_sigmas = sigma;
+  terms.prior_sigmas.resize(kNumUnknowns);
+  terms.prior_sigmas << sigma, of_turn.prior_sigmas;
   return terms;
 }
 
@@ -74,10 +81,10 @@ std::vector<LikelihoodPose> PosesWithRigErrors(const std::vector<const BoardSamp
   return poses;
 }
 
-CameraFaultEstimates FreeRigErrors() {
+CameraFaultEstimates AllFree() {
   CameraFaultEstimates faults;
-  faults.values = RigErrors::Zero();
-  faults.is_observable.assign(kNumRigErrors, true);
+  faults.values.setZero(kNumUnknowns);
+  faults.is_observable.assign(kNumUnknowns, true);
   return faults;
 }
 
@@ -137,18 +144,19 @@ Matrix6d CovarianceByRigErrors(const std::vector<const BoardSample*>& samples,
       PosesWithRigErrors(samples, board, camera, refined, sigma, options.corner_error_px),
       refined.T_camera_lidar,
       options);
-  search.StartFrom(refined.bias, FreeRigErrors(), refined.noise);
+  search.StartFrom(refined.bias, AllFree(), refined.noise);
   if (!search.Minimise(options.max_iterations, kSettled) || !search.IsPhysical()) {
     return Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
   const Eigen::MatrixXd gain = search.Gain(search.Equations().information);
+  const Eigen::Index first = gain.rows() - kNumUnknowns;
   const RigErrorMatrix with_prior =
-      gain.bottomRightCorner<kNumRigErrors, kNumRigErrors>().inverse();
+      gain.block<kNumRigErrors, kNumRigErrors>(first, first).inverse();
   const RigErrorMatrix of_data =
       with_prior - RigErrorMatrix(sigma.cwiseAbs2().cwiseInverse().asDiagonal());
   const Eigen::Matrix<double, 6, kNumRigErrors> J =
-      gain.topRightCorner<6, kNumRigErrors>() * with_prior;
-  const RigErrors pull = with_prior * search.state().CameraFaults();
+      gain.block<6, kNumRigErrors>(0, first) * with_prior;
+  const RigErrors pull = with_prior * search.state().CameraFaults().head<kNumRigErrors>();
   const Matrix6d covariance = J * MeanSquareOf(of_data, pull, sigma) * J.transpose();
   return 0.5 * (covariance + covariance.transpose());
 }

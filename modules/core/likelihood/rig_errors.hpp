@@ -33,8 +33,7 @@ RigErrors PlausibleRigErrors(const CameraModel& camera, const LikelihoodOptions&
 /// and the covariance P, and the extrinsic follows them by J:
 ///     J (P + m m') J'
 /// Where the samples ask for another lens, the interval reaches to the extrinsic that goes with it.
-/// The chessboards' turn, which stands for the lens where no errors of it are asked for, is none of
-/// the unknowns here.
+/// The chessboards' turn and the lidar's faults are as unknown as they were in the refinement.
 ///
 /// @param refined  as if the rig file had no errors: the start, its noise levels and lidar faults.
 /// @return NaN where the search fails.

@@ -90,7 +90,7 @@ TEST(CovarianceByRigErrors, MovesAsARefinementWithOtherSquaresDoes) {
   LikelihoodOptions options;
   options.focal_length_error = options.principal_point_error_px = options.distortion_error = 0;
   options.pattern_offset_error_m = 0;
-  options.board_size_error = 0.002;
+  options.board_size_error = 0.0002;  // too little for samples to tell
   const auto samples = SamplesThrough(LensErrors::Zero());
   auto larger = samples;
   for (BoardSample& sample : larger) {
@@ -109,8 +109,8 @@ TEST(CovarianceByRigErrors, MovesAsARefinementWithOtherSquaresDoes) {
   const double along_view_m =
       DifferenceLeft(refined.T_camera_lidar, moved.T_camera_lidar).tail<3>().norm();
   const double sigma_m = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
-  EXPECT_GT(along_view_m, 0.5 * sigma_m);
-  EXPECT_LT(along_view_m, 2.0 * sigma_m);
+  EXPECT_GT(along_view_m, 0.7 * sigma_m);
+  EXPECT_LT(along_view_m, 1.4 * sigma_m);
 }
 
 TEST(CovarianceByRigErrors, IsNearlyNothingOfARigFileThatIsExact) {

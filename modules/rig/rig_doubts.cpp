@@ -100,7 +100,7 @@ void DoubtFocalLength(const char* key, double value_px, double image_px, Lines* 
 
 void DoubtAspect(const CameraModel& camera, Lines* lines) {
   const double ratio = camera.fy_px / camera.fx_px;
-  if (ratio > 0.8 && ratio < 1.25) return;
+  if (ratio > 0.95 && ratio < 1.05) return;
   lines->push_back(
       Format("camera.fy_px is %.6g, %.3g times fx_px (%.6g): pixels are square in "
              "nearly every camera: is one of the two mistyped?",

@@ -11,18 +11,20 @@ namespace {
 
 std::string Tenths(double value) { return std::isnan(value) ? "-" : Format("%.1f", value); }
 
-// "0.3 0.6 0.4 mm"; "unknown" where the poses are too few to tell.
-std::string ShiftSigma(const Matrix6d& covariance) {
-  const Eigen::Vector3d sigma_mm = kMmPerM * covariance.diagonal().tail<3>().cwiseSqrt();
-  if (!sigma_mm.allFinite()) return "unknown";
-  return Format("%.1f %.1f %.1f mm", sigma_mm.x(), sigma_mm.y(), sigma_mm.z());
-}
-
-// "0.012 0.010 0.004 deg"; the same.
-std::string TurnSigma(const Matrix6d& covariance) {
-  const Eigen::Vector3d sigma_deg = kDegPerRad * covariance.diagonal().head<3>().cwiseSqrt();
-  if (!sigma_deg.allFinite()) return "unknown";
-  return Format("%.3f %.3f %.3f deg", sigma_deg.x(), sigma_deg.y(), sigma_deg.z());
+// "  1 sigma of what  0.3 0.6 0.4 mm, 0.012 0.010 0.004 deg"; "unknown" where nothing tells.
+std::string SigmaLine(const std::string& of_what, const Matrix6d& covariance) {
+  const std::string line = "  1 sigma " + of_what + "  ";
+  const Vector6d sigma = covariance.diagonal().cwiseSqrt();
+  if (!sigma.allFinite()) return line + "unknown\n";
+  const Eigen::Vector3d mm = kMmPerM * sigma.tail<3>();
+  const Eigen::Vector3d deg = kDegPerRad * sigma.head<3>();
+  return line + Format("%.1f %.1f %.1f mm, %.3f %.3f %.3f deg\n",
+                       mm.x(),
+                       mm.y(),
+                       mm.z(),
+                       deg.x(),
+                       deg.y(),
+                       deg.z());
 }
 
 /// The headline, then what is not good.
@@ -40,17 +42,19 @@ std::string TransformLines(const CalibrationResult& result) {
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   return Format(
              "T_camera_lidar (p_camera = T_camera_lidar * p_lidar)\n"
-             "  translation_m    %9.5f %9.5f %9.5f   1 sigma ",
+             "  translation_m    %9.5f %9.5f %9.5f\n"
+             "  quaternion_xyzw  %9.6f %9.6f %9.6f %9.6f\n",
              t.x(),
              t.y(),
-             t.z()) +
-         ShiftSigma(result.covariance_given_rig) + "\n" +
-         Format(
-             "  quaternion_xyzw  %9.6f %9.6f %9.6f %9.6f   1 sigma ", q.x(), q.y(), q.z(), q.w()) +
-         TurnSigma(result.covariance_given_rig) +
-         "\n  with this rig file as it is; the lidar's place, as its lens and board may be off: 1 "
-         "sigma " +
-         ShiftSigma(result.covariance) + ", " + TurnSigma(result.covariance) + "\n";
+             t.z(),
+             q.x(),
+             q.y(),
+             q.z(),
+             q.w()) +
+         SigmaLine("in this camera's image (the rig file taken as exact)",
+                   result.covariance_given_rig) +
+         SigmaLine("of the lidar's place (the rig file's camera and board may be off)",
+                   result.covariance);
 }
 
 // The average is not held out: its own samples flatter it.
@@ -125,7 +129,7 @@ std::string SceneLines(const CalibrationResult& result) {
       result.predicted.begin(), result.predicted.end(), [](const PredictedError& error) {
         return std::isnan(error.corner_px);
       });
-  text += std::string("predicted, 1 sigma, middle of the image (worst corner") +
+  text += std::string("predicted, 1 sigma in this camera's image, its middle (worst corner") +
           (has_open_corner ? "; -: the lens model has no ray there" : "") + ")\n ";
   for (const PredictedError& error : result.predicted) {
     text += Format(" %.0f m: ", error.range_m) + Tenths(error.centre_px) + " px (" +

@@ -122,14 +122,15 @@ void AddCertainty(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   AddNumber("Certainty of the rotation",
             evidence.sigma_deg,
             kSigmaDeg,
-            "Largest standard deviation " + Number(evidence.sigma_deg, 3, "degrees") +
+            "Largest standard deviation in this camera's image " +
+                Number(evidence.sigma_deg, 3, "degrees") +
                 " (good: " + Number(kSigmaDeg.good, 3, "at most") + ").",
             "Take more samples, far to the left and right and high and low.",
             checks);
   AddNumber("Certainty of the translation",
             evidence.sigma_mm,
             kSigmaMm,
-            "Standard deviation " + Number(evidence.sigma_mm, 1, "mm") +
+            "Standard deviation in this camera's image " + Number(evidence.sigma_mm, 1, "mm") +
                 ", the three axes' together (good: " + Number(kSigmaMm.good, 1, "at most") + ").",
             "Take more samples, near ones too, tilted to all sides.",
             checks);

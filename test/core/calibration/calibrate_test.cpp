@@ -73,7 +73,7 @@ TEST(Calibrate, GivesTheSameOnAnyNumberOfThreads) {
   const Calibration alone = calibrate(0);
   const Calibration helped = calibrate(3);
   EXPECT_EQ(alone.T_camera_lidar.matrix(), helped.T_camera_lidar.matrix());
-  EXPECT_EQ(alone.covariance, helped.covariance);
+  EXPECT_EQ(alone.covariance_given_rig, helped.covariance_given_rig);
   ASSERT_THAT(alone.trials, SizeIs(4));
   ASSERT_EQ(alone.trials[1].problem, "");  // the reprojection, which is tried with each left out
   EXPECT_GT(alone.trials[1].ErrorMm(), 0.0);

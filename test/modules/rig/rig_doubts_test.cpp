@@ -143,6 +143,10 @@ TEST(CameraDoubts, NamesFocalLengthsThatAreNotInPixels) {
   camera.fy_px = 2 * camera.fx_px;
   EXPECT_THAT(CameraDoubts(camera),
               ElementsAre(HasSubstr("camera.fy_px is 1795, 2 times fx_px (897.5)")));
+  camera.fy_px = 1.1 * camera.fx_px;
+  EXPECT_THAT(CameraDoubts(camera), ElementsAre(HasSubstr("1.1 times fx_px")));
+  camera.fy_px = 1.02 * camera.fx_px;  // as of no pinhole, but of many a fitted one
+  EXPECT_THAT(CameraDoubts(camera), IsEmpty());
 }
 
 TEST(CameraDoubts, NamesWhyThePrincipalPointIsOffTheMiddle) {

@@ -150,14 +150,15 @@ Told Tell(const GivenSession& clean, GivenSession session, const Rig& rig) {
   return told;
 }
 
-/// By how many of its 95 % intervals the result moved, of the parameter that moved most; infinite
-/// without a result.
+/// By how many of its 95 % intervals (of the lidar's place) the result moved, of the parameter that
+/// moved most; infinite without a result.
 double MovedIntervals(const CalibrationOutcome& clean, const CalibrationOutcome& faulty) {
   constexpr double kSigmas95 = 1.959964;
   if (!faulty.problem.empty()) return HUGE_VAL;
   const Vector6d difference =
       DifferenceLeft(clean.refined.T_camera_lidar, faulty.refined.T_camera_lidar);
   const Vector6d sigma = faulty.refined.covariance.diagonal().cwiseSqrt();
+  if (!sigma.allFinite()) return HUGE_VAL;  // an interval that is not known holds nothing
   return (difference.cwiseAbs().cwiseQuotient(kSigmas95 * sigma)).maxCoeff();
 }
 

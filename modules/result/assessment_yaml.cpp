@@ -63,10 +63,8 @@ std::string BinsYaml(const std::string& name, const std::vector<ScoreBin>& bins)
 
 std::string PredictedYaml(const std::vector<PredictedError>& predicted) {
   std::string text =
-      "# RMS error of a lidar point in the image, by covariance_given_rig: in the middle of the "
-      "image, "
-      "and in the\n"
-      "# worst of its corners\n"
+      "# RMS error of a lidar point in the image, by covariance_given_rig: in the image's\n"
+      "# middle, and in the worst of its corners\n"
       "predicted_errors:" +
       std::string(predicted.empty() ? " []" : "") + "\n";
   for (const PredictedError& error : predicted) {

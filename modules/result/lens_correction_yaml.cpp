@@ -41,9 +41,9 @@ std::string LensCorrectionYaml(const LensCorrection& correction, const std::stri
          "  T_camera_lidar:  # goes with this camera only; T_camera_lidar above with the rig "
          "file's\n" +
          TransformYaml(correction.T_camera_lidar, "    ") +
-         "  covariance:  # of it, if the board is exactly right: rotation_rad, then translation_m, "
-         "left "
-         "(camera) side\n" +
+         "  # of it, if the board is exactly right: rotation_rad, then translation_m, on the\n"
+         "  # left (camera) side\n"
+         "  covariance:\n" +
          RowsYaml(correction.covariance, "    ") +
          "  held_out:  # each sample by extrinsic, intrinsics and lidar_bias estimated without "
          "it\n" +

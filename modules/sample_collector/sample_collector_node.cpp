@@ -77,12 +77,12 @@ SampleCollectorNode::SampleCollectorNode(const Rig& rig,
   bus_.Subscribe<lidar_board_t>(
       channels_.lidar_board, Queue::kEvery, [this](const lidar_board_t& m) {
         OnBoard(m, &lidar_);
-        lidar_.frames.ForgetJudged(m.utime, picker_.LidarUtimesInUse());
+        lidar_.frames.ForgetJudged(m.utime, picker_.InUse().lidar_utimes);
       });
   bus_.Subscribe<camera_board_t>(
       channels_.camera_board, Queue::kEvery, [this](const camera_board_t& m) {
         OnBoard(m, &camera_);
-        camera_.frames.ForgetJudged(m.utime, picker_.CameraUtimesInUse());
+        camera_.frames.ForgetJudged(m.utime, picker_.InUse().camera_utimes);
       });
   bus_.Subscribe<module_status_t>(
       channels_.module_status, Queue::kEvery, [this](const module_status_t& m) {

@@ -10,6 +10,7 @@
 #include "core/geometry/rigid.hpp"
 #include "core/problems.hpp"
 #include "core/sampling/average_sightings.hpp"
+#include "core/sampling/corner_motion.hpp"
 
 namespace voqcal {
 namespace {
@@ -70,34 +71,6 @@ const LidarBoard* FoundAgain(const LidarBoard& board, const LidarSighting& frame
   for (const LidarBoard& candidate : frame.runners_up) consider(candidate);
   consider(*frame.board);
   return nearest;
-}
-
-bool IsWhole(const CameraBoard& board) {
-  return std::all_of(board.corners_px.begin(), board.corners_px.end(), [](const auto& corner_px) {
-    return corner_px.allFinite();
-  });
-}
-
-// Of the corners that both saw; infinite if there is none. Features of a table have no corners, and
-// do not move by them.
-double LargestCornerMotionPx(const CameraBoard& a, const CameraBoard& b) {
-  constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  if (a.corners_px.size() != b.corners_px.size()) return kInfinite;
-  if (a.corners_px.empty()) return 0.0;
-  double same_px = 0;
-  double turned_px = 0;  // the detector took the other half-turn
-  int num_common = 0;
-  const std::size_t n = a.corners_px.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    turned_px = std::max(turned_px, (a.corners_px[i] - b.corners_px[n - 1 - i]).norm());
-    const double motion_px = (a.corners_px[i] - b.corners_px[i]).norm();
-    if (!std::isfinite(motion_px)) continue;
-    same_px = std::max(same_px, motion_px);
-    ++num_common;
-  }
-  // Only of whole patterns the half-turn may be unknown: a part is told by its markers.
-  if (IsWhole(a) && IsWhole(b)) same_px = std::min(same_px, turned_px);
-  return num_common > 0 ? same_px : kInfinite;
 }
 
 // The pose is none of the known ones, up to the board's half-turn.
@@ -180,22 +153,17 @@ std::vector<PickerDecision> SamplePicker::RestartIfBack(std::int64_t utime, std:
 
 std::vector<PickerDecision> SamplePicker::Flush() { return Judge(true); }
 
-std::vector<std::int64_t> SamplePicker::LidarUtimesInUse() const {
-  std::vector<std::int64_t> utimes;
-  for (const LidarSighting& lidar : lidar_) utimes.push_back(lidar.utime);
+FramesInUse SamplePicker::InUse() const {
+  FramesInUse frames;
+  for (const LidarSighting& lidar : lidar_) frames.lidar_utimes.push_back(lidar.utime);
+  for (const CameraSighting& camera : camera_) frames.camera_utimes.push_back(camera.utime);
   for (const std::vector<Pair>* pairs : {&window_, &followed_}) {
-    for (const Pair& pair : *pairs) utimes.push_back(pair.lidar.utime);
+    for (const Pair& pair : *pairs) {
+      frames.lidar_utimes.push_back(pair.lidar.utime);
+      frames.camera_utimes.push_back(pair.camera.utime);
+    }
   }
-  return utimes;
-}
-
-std::vector<std::int64_t> SamplePicker::CameraUtimesInUse() const {
-  std::vector<std::int64_t> utimes;
-  for (const CameraSighting& camera : camera_) utimes.push_back(camera.utime);
-  for (const std::vector<Pair>* pairs : {&window_, &followed_}) {
-    for (const Pair& pair : *pairs) utimes.push_back(pair.camera.utime);
-  }
-  return utimes;
+  return frames;
 }
 
 void SamplePicker::SetKnown(const std::vector<BoardSample>& samples) {

@@ -59,6 +59,12 @@ struct PickerDecision {
   std::optional<UnsureStop> unsure{};   ///< With the reason that the lidar saw no board.
 };
 
+/// Capture times of frames.
+struct FramesInUse {
+  std::vector<std::int64_t> lidar_utimes;
+  std::vector<std::int64_t> camera_utimes;
+};
+
 /// Pairs the two detectors' streams by sensor time and picks the samples.
 ///
 /// The answer depends on the sightings' times only, not on the order in which the two streams
@@ -88,10 +94,8 @@ class SamplePicker {
   /// The stop is unsure no more: if its sample is discarded, the board may come back there.
   PickerDecision TakeStop(const UnsureStop& stop);
 
-  /// Capture times of the frames that a later decision may name. Of those that were added no other
-  /// is.
-  std::vector<std::int64_t> LidarUtimesInUse() const;
-  std::vector<std::int64_t> CameraUtimesInUse() const;
+  /// Those that were added and that a later decision may name; it names no others.
+  FramesInUse InUse() const;
 
   /// The samples that the session has: new poses must differ from them. Unsure stops stay, as
   /// whoever keeps them does: the same stop must not come twice.

@@ -51,7 +51,7 @@ TEST(SamplePicker, AcceptsAStillBoardOnce) {
 TEST(SamplePicker, NamesNoFrameThatIsNotInUse) {
   SamplePicker picker(Board(), {});
   for (int frame = 0; frame < 40; ++frame) {
-    std::vector<std::int64_t> lidar_in_use = picker.LidarUtimesInUse();
+    std::vector<std::int64_t> lidar_in_use = picker.InUse().lidar_utimes;
     lidar_in_use.push_back(frame * kFrameUs);
     std::vector<PickerDecision> decisions;
     const double x_m = 0.5 + 0.1 * (frame / 5);  // a stop of five frames each
@@ -59,7 +59,7 @@ TEST(SamplePicker, NamesNoFrameThatIsNotInUse) {
     if (frame / 5 % 2 == 1) lidar = {frame * kFrameUs, {}, "unsure"};
     Append(picker.Add(lidar), &decisions);
     // The camera's frames come two later.
-    std::vector<std::int64_t> camera_in_use = picker.CameraUtimesInUse();
+    std::vector<std::int64_t> camera_in_use = picker.InUse().camera_utimes;
     camera_in_use.push_back((frame - 2) * kFrameUs);
     if (frame >= 2)
       Append(picker.Add(Camera(frame - 2, 0.5 + 0.1 * ((frame - 2) / 5))), &decisions);
@@ -75,8 +75,8 @@ TEST(SamplePicker, NamesNoFrameThatIsNotInUse) {
       }
     }
     // Three of a window, three that are followed, and those that wait.
-    EXPECT_LE(picker.LidarUtimesInUse().size(), 9U);
-    EXPECT_LE(picker.CameraUtimesInUse().size(), 9U);
+    EXPECT_LE(picker.InUse().lidar_utimes.size(), 9U);
+    EXPECT_LE(picker.InUse().camera_utimes.size(), 9U);
   }
 }
 

@@ -45,7 +45,10 @@ Suspect Coefficient(int i, const CameraModel& camera) {
                   given);
   };
   const Say remedy = [=](const FaultFit& fit) {
-    return DistortionLine(CameraWith(fit.Faults(), camera));
+    const std::string line = DistortionLine(CameraWith(fit.Faults(), camera));
+    const auto& d = camera.distortion;
+    const bool has_none = std::all_of(d.begin(), d.end(), [](double k) { return k == 0.0; });
+    return has_none ? line + ", or better the whole lens, which calibrate_lens finds" : line;
   };
   constexpr double kMost = std::numeric_limits<double>::infinity();
   return {"distortion", "distortion", {fault}, kMost, false, 1, "", claim, remedy};
@@ -59,7 +62,8 @@ Suspect Squares(const BoardSpec& board) {
                   fit.Value(kSquareScale) < 0 ? "large" : "small");
   };
   const Say remedy = [board](const FaultFit& fit) {
-    return Format("board.square_m: %.5f", BoardWith(fit.Faults(), board).square_m);
+    return Format("board.square_m: about %.5f; measure ten squares in a row with a rule",
+                  BoardWith(fit.Faults(), board).square_m);
   };
   constexpr double kMost = 0.3;
   return {

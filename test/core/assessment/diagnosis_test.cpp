@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/assessment/suspects.hpp"
 #include "core/camera_detection/planar_pose.hpp"
 #include "core/estimation/refine.hpp"
 #include "core/geometry/rigid.hpp"
@@ -221,6 +222,15 @@ TEST(Diagnose, FindsSquaresThatWereMisMeasured) {
   const Diagnosis diagnosis = session.Run();
   ASSERT_EQ(FirstCause(diagnosis), "board's squares");
   EXPECT_NEAR(diagnosis.findings[0].value, -1.96, 3 * diagnosis.findings[0].standard_error + 0.1);
+  EXPECT_THAT(diagnosis.findings.front().text, HasSubstr("measure ten squares in a row"));
+}
+
+TEST(SuspectsOf, ALensWithoutCoefficientsIsToBeCalibrated) {
+  CameraModel camera = test::TestCamera();
+  const auto last_remedy = [&] { return SuspectsOf(test::TestBoard(), camera).back().remedy({}); };
+  EXPECT_THAT(last_remedy(), Not(HasSubstr("calibrate_lens")));
+  camera.distortion = {};
+  EXPECT_THAT(last_remedy(), HasSubstr("calibrate_lens"));
 }
 
 TEST(Diagnose, FindsAnOutlineThatWasMisMeasured) {

@@ -46,28 +46,19 @@ void ReadLikelihood(OptionSection* refiner, LikelihoodOptions* options) {
       "outline_error_deg", &options->outline_error_rad, "...and its turn in the plane");
   section.Read("camera_error_m", &options->camera_error_m, "of a chessboard's depth...");
   section.ReadDegrees("camera_error_deg", &options->camera_error_rad, "...and its tilt");
-  section.Read("focal_length_error",
-               &options->focal_length_error,
-               "of the camera's focal lengths, relative, and of one against the other");
-  section.Read("principal_point_error_px",
-               &options->principal_point_error_px,
-               "of its principal point, each way");
-  section.Read("distortion_error",
-               &options->distortion_error,
-               "of its distortion: the share by which a point moves half the image's width away");
+  section.Read("lens_error",
+               &options->lens_error,
+               "of the camera's intrinsics: of each (focal length, its aspect, principal point x "
+               "and y, two radial terms) by how far it moves a point half the image's width from "
+               "the middle, as a share of that");
   section.Read("board_size_error", &options->board_size_error, "of a chessboard square, relative");
   section.Read("pattern_offset_error_m",
                &options->pattern_offset_error_m,
                "of the pattern's offset on the plate, each way");
   section.Read(
-      "lens_error",
-      &options->lens_error,
-      "for lens_correction only: each error of the intrinsics, as the share of half the image's "
-      "width by which it moves a point there...");
-  section.Read("corner_error_px",
-               &options->corner_error_px,
-               "...and, for what the rig file may be off by too, a chessboard's corner, neighbours "
-               "erring alike");
+      "corner_error_px",
+      &options->corner_error_px,
+      "of a chessboard's corner where it tells of the intrinsics, neighbours erring alike");
   section.Read("max_iterations", &options->max_iterations, "of the fit");
   CheckAndClose(*options, &section);
 }

@@ -27,8 +27,15 @@ class Report : public ::testing::Test {
   std::string Path(const std::string& name) const { return folder_.path() / name; }
 
   void Calibrate(const std::string& rig, const std::string& log, const std::string& out) const {
-    const test::Outcome outcome =
-        test::Run({test::Program("calibrate"), "--rig", rig, "--log", log, "--out", Path(out)});
+    const test::Outcome outcome = test::Run({test::Program("calibrate"),
+                                             "--rig",
+                                             rig,
+                                             "--log",
+                                             log,
+                                             "--out",
+                                             Path(out),
+                                             "--require",
+                                             "any"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_THAT(outcome.err, Not(HasSubstr("report")));
   }
@@ -123,9 +130,23 @@ TEST_F(SimulatedReport, IsTheSameWhateverPythonsTheUserHas) {
                                            "--log",
                                            Path("raw.lcm"),
                                            "--out",
-                                           Path("again")});
+                                           Path("again"),
+                                           "--require",
+                                           "any"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(ReadWholeFile(Path("again/report.html")), ReadWholeFile(Path("out/report.html")));
+}
+
+// A script that copies the result onto a robot stops by itself.
+TEST_F(SimulatedReport, AResultNotToBeUsedIsWrittenAndIsAnExitStatus) {
+  const test::Outcome outcome = test::Run(
+      {test::Program("calibrate"), "--rig", rig_, "--log", Path("raw.lcm"), "--out", Path("bad")});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.out, HasSubstr("Do not use it"));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("Do not use it"), HasSubstr("--require any")));
+  for (const char* name : {"/report.html", "/extrinsic.yaml"}) {
+    EXPECT_EQ(ReadWholeFile(Path("out") + name), ReadWholeFile(Path("bad") + name)) << name;
+  }
 }
 
 // By make_report.py alone, without pictures.

@@ -107,7 +107,7 @@ void MoveBetween(Session* session) {
 void MistakeWhatIsAdmitted(Session* session) {
   const LikelihoodOptions& options = session->rig.extrinsic_refiner.likelihood;
   const KeyedNoise noise(session->options.seed, NoiseUse::kHolds, -1);
-  RigErrors errors = PlausibleRigErrors(session->camera, options);
+  RigErrors errors = PlausibleRigErrors(options);
   for (Eigen::Index i = 0; i < kNumRigErrors; ++i) {
     errors[i] *= noise.Normals(static_cast<std::uint64_t>(i)).first;
   }

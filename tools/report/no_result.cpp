@@ -163,6 +163,7 @@ std::string WriteNoResult(const Rig& rig,
   const std::string log_sha256 = std::filesystem::exists(log) ? Sha256OfFile(log) : "";
   const Json json = {{"rig", rig.name},
                      {"problem", problem + trouble},
+                     {"num_samples", samples.size()},
                      {"counts", Counts(misses.counts)},
                      {"misses", Misses(misses, rig, &pictures)},
                      {"samples", Samples(rig, samples, session, &pictures)},

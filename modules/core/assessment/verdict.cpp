@@ -103,6 +103,17 @@ void AddFit(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
       checks);
 }
 
+/// What may come of a cause that was found is not put down to whoever held the board.
+std::string RemedyAfterCause(const Evidence& evidence, const std::string& otherwise) {
+  if (!evidence.likeliest_fault.empty()) {
+    return "First mend what may be why: " + evidence.likeliest_cause + ".";
+  }
+  if (!evidence.other_lens.empty()) {
+    return "First calibrate the lens, which may be why (calibrate_lens).";
+  }
+  return otherwise;
+}
+
 /// What was taken out of the directions, so that they do not show it.
 void AddChessboardTurn(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
   if (evidence.chessboard_turn_deg == 0.0) return;
@@ -113,8 +124,9 @@ void AddChessboardTurn(const Evidence& evidence, std::vector<VerdictCheck>* chec
       "All chessboards are turned by " + Number(evidence.chessboard_turn_deg, 2, "degrees") +
           " against the rays to them, as by a principal point or scan lines that are off. This was "
           "taken out.",
-      "Check camera.cx_px and cy_px in the rig file (calibrate_lens finds them), and the lidar's "
-      "own calibration.",
+      RemedyAfterCause(evidence,
+                       "Check camera.cx_px and cy_px in the rig file (calibrate_lens finds them), "
+                       "and the lidar's own calibration."),
       checks);
 }
 
@@ -161,7 +173,7 @@ void AddPoses(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
       GradeOf(static_cast<double>(num_left_out) / std::max(evidence.num_samples, 1), kLeftOutShare),
       std::to_string(num_left_out) + " of " + std::to_string(evidence.num_samples) +
           " samples disagreed with the others and were left out.",
-      "Hold the board still, away from people and things of its size.",
+      RemedyAfterCause(evidence, "Hold the board still, away from people and things of its size."),
       checks);
 }
 

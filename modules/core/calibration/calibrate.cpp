@@ -8,12 +8,30 @@
 #include "core/calibration/likely_cause.hpp"
 #include "core/least_samples.hpp"
 #include "core/selection/differences_from_others.hpp"
+#include "core/selection/pose_variety.hpp"
 
 namespace voqcal {
 namespace {
 
 std::int64_t IdOf(const std::vector<BoardSample>& samples, int index) {
   return samples[static_cast<std::size_t>(index)].id;
+}
+
+/// Why what agrees is too little to go on; empty if it is not. Where most samples contradict the
+/// others, the few that are left and are alike agree by chance: to ask for more of them is no help.
+std::string Disagreement(const ChosenSamples& chosen) {
+  if (chosen.samples.empty()) return "fewer than three samples: none was taken";
+  const std::vector<const BoardSample*> used = chosen.Used();
+  const std::string counts =
+      std::to_string(used.size()) + " of " + std::to_string(chosen.samples.size());
+  if (used.size() < kLeastSamples) {
+    return "fewer than three samples that agree with each other: " + counts;
+  }
+  const bool most_contradict = 2 * used.size() < chosen.samples.size();
+  if (most_contradict && !VarietyProblem(used).empty()) {
+    return "most samples contradict one another; those that agree, " + counts + ", are too alike";
+  }
+  return {};
 }
 
 }  // namespace
@@ -51,10 +69,8 @@ ChosenSets ChooseSets(const ChosenSamples& chosen, const CalibrationTask& task) 
   std::vector<BoardSample> used;
   for (const BoardSample* sample : chosen.Used()) used.push_back(*sample);
   ChosenSets result;
-  if (used.size() < kLeastSamples) {
-    result.problem =
-        "fewer than three samples that agree with each other: " + std::to_string(used.size()) +
-        " of " + std::to_string(chosen.samples.size());
+  result.problem = Disagreement(chosen);
+  if (!result.problem.empty()) {
     const auto likely = LikelyCause(chosen.samples, task);
     if (likely) result.problem += "; likely cause: " + likely->cause + ": " + likely->text;
     return result;

@@ -15,19 +15,12 @@ std::vector<std::string> LikelihoodOptions::Problems() const {
   problems.RequirePositive("outline_error_rad", outline_error_rad);
   problems.RequirePositive("camera_error_m", camera_error_m);
   problems.RequirePositive("camera_error_rad", camera_error_rad);
-  problems.Require(
-      focal_length_error >= 0.0, "focal_length_error must not be negative", focal_length_error);
-  problems.Require(principal_point_error_px >= 0.0,
-                   "principal_point_error_px must not be negative",
-                   principal_point_error_px);
-  problems.Require(
-      distortion_error >= 0.0, "distortion_error must not be negative", distortion_error);
+  problems.RequirePositive("lens_error", lens_error);
   problems.Require(pattern_offset_error_m >= 0.0,
                    "pattern_offset_error_m must not be negative",
                    pattern_offset_error_m);
   problems.Require(
       board_size_error >= 0.0, "board_size_error must not be negative", board_size_error);
-  problems.RequirePositive("lens_error", lens_error);
   problems.RequirePositive("corner_error_px", corner_error_px);
   problems.RequirePositive("max_iterations", max_iterations);
   return problems.lines();

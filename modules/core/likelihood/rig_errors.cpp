@@ -117,14 +117,9 @@ RigErrorMatrix MeanSquareOf(const RigErrorMatrix& information,
 
 }  // namespace
 
-RigErrors PlausibleRigErrors(const CameraModel& camera, const LikelihoodOptions& options) {
+RigErrors PlausibleRigErrors(const LikelihoodOptions& options) {
   RigErrors sigma;
-  sigma[kFocalLength] = options.focal_length_error;
-  sigma[kAspect] = 0.5 * options.focal_length_error;  // fx longer by it, fy shorter
-  sigma[kPrincipalPointX] = options.principal_point_error_px / LensReachPx(camera);
-  sigma[kPrincipalPointY] = sigma[kPrincipalPointX];
-  sigma[kRadial2] = options.distortion_error;
-  sigma[kRadial4] = options.distortion_error;
+  sigma.head<kNumLensErrors>().setConstant(options.lens_error);
   sigma[kSquares] = options.board_size_error;
   sigma[kPatternOffsetX] = options.pattern_offset_error_m;
   sigma[kPatternOffsetY] = options.pattern_offset_error_m;
@@ -139,7 +134,7 @@ Matrix6d CovarianceByRigErrors(const std::vector<const BoardSample*>& samples,
   constexpr double kLeastPrior = 1e-9;  // the search needs one
   constexpr double kSettled = 1e-6;     // radians or metres
   RequireUsable("LikelihoodOptions", options.Problems());
-  const RigErrors sigma = PlausibleRigErrors(camera, options).cwiseMax(kLeastPrior);
+  const RigErrors sigma = PlausibleRigErrors(options).cwiseMax(kLeastPrior);
   LikelihoodSearch search(
       PosesWithRigErrors(samples, board, camera, refined, sigma, options.corner_error_px),
       refined.T_camera_lidar,

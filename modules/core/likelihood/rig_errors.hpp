@@ -24,7 +24,7 @@ enum RigError : Eigen::Index {
 using RigErrors = Eigen::Matrix<double, kNumRigErrors, 1>;
 
 /// 1 sigma of each, before the samples speak.
-RigErrors PlausibleRigErrors(const CameraModel& camera, const LikelihoodOptions& options);
+RigErrors PlausibleRigErrors(const LikelihoodOptions& options);
 
 /// By how much the errors that the rig file may have widen an extrinsic that is refined as if it
 /// had none: of [rotation_rad; translation_m], perturbed on the left (camera) side. The errors l

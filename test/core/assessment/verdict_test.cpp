@@ -1,5 +1,7 @@
 #include "core/assessment/verdict.hpp"
 
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -56,6 +58,36 @@ TEST(VerdictOf, IsAsBadAsItsWorstCheck) {
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->num_samples = 40; }).grade, Grade::kLook);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->likeliest_fault = "a fault"; }).grade, Grade::kLook);
   EXPECT_EQ(JudgeWith([](Evidence* e) { e->scene = Agreement::kDisagrees; }).grade, Grade::kBad);
+}
+
+std::string TextOf(const Verdict& verdict, const std::string& check) {
+  for (const VerdictCheck& each : verdict.checks) {
+    if (each.name == check) return each.text;
+  }
+  return "no such check";
+}
+
+TEST(VerdictOf, BlamesNobodyForWhatACauseMayHaveDone) {
+  const auto left_out = [](Evidence* e) {
+    e->num_samples = 40;
+    e->chessboard_turn_deg = 1.5;
+  };
+  const Verdict without = JudgeWith(left_out);
+  EXPECT_THAT(TextOf(without, "Samples left out"), HasSubstr("Hold the board still"));
+  EXPECT_THAT(TextOf(without, "Boards and rays"), HasSubstr("cx_px"));
+  const Verdict by_cause = JudgeWith([&](Evidence* e) {
+    left_out(e);
+    e->likeliest_fault = "the squares are 2 % larger";
+    e->likeliest_cause = "board's squares";
+  });
+  const Verdict by_lens = JudgeWith([&](Evidence* e) {
+    left_out(e);
+    e->other_lens = "the samples ask for another lens";
+  });
+  for (const char* check : {"Samples left out", "Boards and rays"}) {
+    EXPECT_THAT(TextOf(by_cause, check), HasSubstr("First mend what may be why: board's squares."));
+    EXPECT_THAT(TextOf(by_lens, check), HasSubstr("First calibrate the lens"));
+  }
 }
 
 TEST(VerdictOf, IsBadByACauseThatMustBeMendedWhichComesFirst) {

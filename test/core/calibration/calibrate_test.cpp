@@ -10,6 +10,7 @@
 namespace voqcal {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -62,6 +63,24 @@ TEST(Calibrate, SaysWhichStepGaveNothing) {
   const auto one_way = Calibrate(test::SynthesizeSamples(parallel), {}, kTask);
   EXPECT_THAT(one_way.problem, HasSubstr("all boards face the same way"));
   EXPECT_THAT(one_way.calibration.used_ids, IsEmpty());
+}
+
+// The board rested at the first place for a third of the session: there, a pair's sweep and the
+// next pair's are alike, and all others contradict one another.
+TEST(Calibrate, AsksWhyMostSamplesContradictTheFewThatAgree) {
+  test::SyntheticSamplesOptions scene = NoisyScene();
+  scene.num_samples = 15;
+  auto samples = test::SynthesizeSamples(scene);
+  const BoardSample first = samples.front();
+  for (std::size_t i = 0; i < 5; ++i) {
+    const std::int64_t id = samples[i].id;
+    samples[i] = first;
+    samples[i].id = id;
+  }
+  for (std::size_t i = samples.size() - 1; i > 0; --i) samples[i].lidar = samples[i - 1].lidar;
+  const auto outcome = Calibrate(samples, {}, kTask);
+  EXPECT_THAT(outcome.problem,
+              AllOf(HasSubstr("of 15, are too alike"), HasSubstr("likely cause: shifted pairs")));
 }
 
 TEST(Calibrate, GivesTheSameOnAnyNumberOfThreads) {

@@ -40,18 +40,20 @@ struct Refined {
   }
 };
 
-Refined Refine(const std::vector<BoardSample>& samples, const BoardSpec& board) {
+Refined Refine(const std::vector<BoardSample>& samples,
+               const BoardSpec& board,
+               const LikelihoodOptions& options = {}) {
   const auto all = test::Pointers(samples);
   Refined refined;
-  refined.likelihood = RefineByLikelihood(all, test::TestExtrinsic(), {});
+  refined.likelihood = RefineByLikelihood(all, test::TestExtrinsic(), options);
   refined.by_rig_errors =
-      CovarianceByRigErrors(all, board, test::TestCamera(), refined.likelihood, {});
+      CovarianceByRigErrors(all, board, test::TestCamera(), refined.likelihood, options);
   return refined;
 }
 
 TEST(CovarianceByRigErrors, HoldsThePrincipalPointThatSamplesDoNotTell) {
   LensErrors errors = LensErrors::Zero();
-  errors[kPrincipalPointX] = 4.0 / LensReachPx(test::TestCamera());  // 2 sigma
+  errors[kPrincipalPointX] = 4.0 / LensReachPx(test::TestCamera());
   const Refined refined = Refine(SamplesThrough(errors), test::TestBoard());
   ASSERT_TRUE(refined.likelihood.IsUsable());
   EXPECT_GT(refined.WorstGivenRig(), 3.0);
@@ -60,8 +62,10 @@ TEST(CovarianceByRigErrors, HoldsThePrincipalPointThatSamplesDoNotTell) {
 
 TEST(CovarianceByRigErrors, IsAsMuchWiderAsTheSamplesContradictTheLens) {
   LensErrors errors;
-  errors << 0.02, 0.0, 0.0, 0.0, 0.0, 0.0;  // 20 sigma of what is plausible
-  const Refined refined = Refine(SamplesThrough(errors), test::TestBoard());
+  errors << 0.02, 0.0, 0.0, 0.0, 0.0, 0.0;
+  LikelihoodOptions options;
+  options.lens_error = 0.001;  // which the samples' lens exceeds by 20 sigma
+  const Refined refined = Refine(SamplesThrough(errors), test::TestBoard(), options);
   ASSERT_TRUE(refined.likelihood.IsUsable());
   EXPECT_GT(refined.WorstGivenRig(), 5.0);
   EXPECT_LT(refined.Worst(), 2.5);
@@ -70,7 +74,8 @@ TEST(CovarianceByRigErrors, IsAsMuchWiderAsTheSamplesContradictTheLens) {
 TEST(CovarianceByRigErrors, IsAboutWhatIsPlausibleWhereNothingIsWrong) {
   const Refined refined = Refine(SamplesThrough(LensErrors::Zero()), test::TestBoard());
   ASSERT_TRUE(refined.likelihood.IsUsable());
-  const double turn_rad = LikelihoodOptions{}.principal_point_error_px / test::TestCamera().fx_px;
+  const double turn_rad =
+      LikelihoodOptions{}.lens_error * LensReachPx(test::TestCamera()) / test::TestCamera().fx_px;
   const Vector6d sigma = refined.by_rig_errors.diagonal().cwiseSqrt();
   EXPECT_LT(sigma.head<3>().maxCoeff(), 1.5 * turn_rad);
   EXPECT_GT(sigma[1], 0.2 * turn_rad);  // cx, about y
@@ -88,7 +93,7 @@ TEST(CovarianceByRigErrors, IsNoSmallerWhereNoCornersTell) {
 // The squares' error is the only one: the board is as much farther away.
 TEST(CovarianceByRigErrors, MovesAsARefinementWithOtherSquaresDoes) {
   LikelihoodOptions options;
-  options.focal_length_error = options.principal_point_error_px = options.distortion_error = 0;
+  options.lens_error = 1e-9;
   options.pattern_offset_error_m = 0;
   options.board_size_error = 0.0002;  // too little for samples to tell
   const auto samples = SamplesThrough(LensErrors::Zero());
@@ -115,7 +120,7 @@ TEST(CovarianceByRigErrors, MovesAsARefinementWithOtherSquaresDoes) {
 
 TEST(CovarianceByRigErrors, IsNearlyNothingOfARigFileThatIsExact) {
   LikelihoodOptions exact;
-  exact.focal_length_error = exact.principal_point_error_px = exact.distortion_error = 0;
+  exact.lens_error = 1e-9;
   exact.board_size_error = exact.pattern_offset_error_m = 0;
   const auto samples = SamplesThrough(LensErrors::Zero());
   const auto all = test::Pointers(samples);

@@ -13,8 +13,6 @@
 namespace voqcal {
 namespace {
 
-using Views = std::vector<std::vector<Eigen::Vector2d>>;
-
 // Infinite where no pose explains the corners.
 std::vector<double> RmsPx(const Views& views_px,
                           const BoardSpec& board,
@@ -64,7 +62,8 @@ std::optional<LensCause> BestOf(const std::vector<RigQuestion>& questions,
   return best;
 }
 
-// Of the model that is given, the numbers by which the views fit best; nothing if they tell none.
+}  // namespace
+
 std::optional<CameraModel> FittedCamera(const Views& views_px,
                                         const BoardSpec& board,
                                         const CameraModel& camera) {
@@ -80,8 +79,6 @@ std::optional<CameraModel> FittedCamera(const Views& views_px,
   const auto fit = FitLens(WholeForm(camera.lens), corners_board_m, views, *start, kHugePx);
   return fit ? std::optional(fit->camera) : std::nullopt;
 }
-
-}  // namespace
 
 std::optional<LensCause> FindLensCause(const Views& views_px,
                                        const BoardSpec& board,

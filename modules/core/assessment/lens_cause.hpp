@@ -12,6 +12,15 @@
 
 namespace voqcal {
 
+/// Of each image the inner corners, in BoardSpec::InnerCornersBoardM order; NaN: not seen.
+using Views = std::vector<std::vector<Eigen::Vector2d>>;
+
+/// The numbers of the lens model that is given by which the views fit best; nothing if they tell
+/// none. No more than a hint which number is wrong: CalibrateLens is for good ones.
+std::optional<CameraModel> FittedCamera(const Views& views_px,
+                                        const BoardSpec& board,
+                                        const CameraModel& camera);
+
 /// What the rig file says of the camera, and should say.
 struct LensCause {
   std::string cause;            ///< "lens model", "image size", ...: one of a few.
@@ -25,11 +34,9 @@ struct LensCause {
 /// most of them fit, and far better than as it is; of several the one with
 /// the smallest median RMS. No lidar is needed to tell: a plane seen through the wrong lens is
 /// none.
-/// @param views_px    of each image the inner corners, in BoardSpec::InnerCornersBoardM order; NaN:
-///     not seen.
 /// @param max_rms_px  of the reprojection, of a view that fits.
 /// @return nothing if there are fewer than five views, or no answer does.
-std::optional<LensCause> FindLensCause(const std::vector<std::vector<Eigen::Vector2d>>& views_px,
+std::optional<LensCause> FindLensCause(const Views& views_px,
                                        const BoardSpec& board,
                                        const CameraModel& camera,
                                        double max_rms_px);

@@ -175,6 +175,14 @@ std::vector<RigQuestion> QuestionsAboutNumbers(const CameraModel& given,
   return questions;
 }
 
+RigQuestion QuestionAboutSquares(const BoardSpec& board, double scale) {
+  const double square_m = scale * board.square_m;
+  const auto change = [square_m](BoardSpec* said, CameraModel*) { said->square_m = square_m; };
+  RigQuestion question = AskAbout("board's squares", "the squares' size is wrong", "", change);
+  question.remedy = "give " + SquaresLine(square_m);
+  return question;
+}
+
 std::vector<RigQuestion> QuestionsAbout(const BoardSpec& board, const CameraModel& camera) {
   std::vector<RigQuestion> questions = QuestionsAboutLens(camera);
   AskAboutPattern(board, &questions);

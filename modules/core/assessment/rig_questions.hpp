@@ -23,6 +23,9 @@ std::vector<RigQuestion> QuestionsAboutLens(const CameraModel& camera);
 /// images has it?
 std::vector<RigQuestion> QuestionsAboutNumbers(const CameraModel& given, const CameraModel& fitted);
 
+/// What if the squares were `scale` times as large?
+RigQuestion QuestionAboutSquares(const BoardSpec& board, double scale);
+
 /// Those that make sense of such a board and camera: a sign of an offset that is not zero, ...
 std::vector<RigQuestion> QuestionsAbout(const BoardSpec& board, const CameraModel& camera);
 

@@ -62,8 +62,7 @@ Suspect Squares(const BoardSpec& board) {
                   fit.Value(kSquareScale) < 0 ? "large" : "small");
   };
   const Say remedy = [board](const FaultFit& fit) {
-    return Format("board.square_m: about %.5f; measure ten squares in a row with a rule",
-                  BoardWith(fit.Faults(), board).square_m);
+    return SquaresLine(BoardWith(fit.Faults(), board).square_m);
   };
   constexpr double kMost = 0.3;
   return {
@@ -152,6 +151,10 @@ double Suspect::LengthError(const FaultFit& fit) const {
   double sum = 0;
   for (const FaultParameter fault : faults) sum += std::pow(fit.StandardError(fault), 2);
   return std::sqrt(sum);
+}
+
+std::string SquaresLine(double square_m) {
+  return Format("board.square_m: about %.5f; measure ten squares in a row with a rule", square_m);
 }
 
 std::string DistortionLine(const CameraModel& camera) {

@@ -30,6 +30,8 @@ struct Suspect {
 
 /// The line of the rig file: "camera.distortion: [-0.44, 0.23, 0, 0, 0]".
 std::string DistortionLine(const CameraModel& camera);
+/// ..., and how to know it better than samples tell.
+std::string SquaresLine(double square_m);
 
 inline constexpr char kPrincipalPointCause[] = "principal point";
 Suspect PrincipalPoint(const CameraModel& camera);

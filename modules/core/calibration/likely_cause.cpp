@@ -1,13 +1,16 @@
 #include "core/calibration/likely_cause.hpp"
 
 #include <cstddef>
+#include <utility>
 
+#include "core/assessment/lens_cause.hpp"
 #include "core/assessment/rig_questions.hpp"
 #include "core/board/half_turn.hpp"
 #include "core/estimation/set_extrinsic.hpp"
 #include "core/format.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/least_samples.hpp"
+#include "core/median.hpp"
 #include "core/selection/consistency.hpp"
 
 namespace voqcal {
@@ -38,6 +41,40 @@ std::size_t NumAgreeing(const std::vector<BoardSample>& samples,
   return num;
 }
 
+/// How many times farther apart the boards' centres are by the lidar than by the camera: the median
+/// over every two samples. What one sensor has wrong at some places leaves it as it is; squares of
+/// another size are it.
+double CentresScale(const std::vector<BoardSample>& samples) {
+  constexpr double kFarM = 0.5;  // nearer ones' ratio is that of errors
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double lidar_m =
+          (samples[i].lidar.pose.centre_m - samples[j].lidar.pose.centre_m).norm();
+      const double camera_m =
+          (samples[i].camera.pose.centre_m - samples[j].camera.pose.centre_m).norm();
+      if (lidar_m > kFarM && camera_m > 0) ratios.push_back(lidar_m / camera_m);
+    }
+  }
+  return ratios.empty() ? 1.0 : Median(ratios);
+}
+
+/// Those that make sense of any session, and those that the samples themselves raise.
+std::vector<RigQuestion> QuestionsOf(const GivenSession& given) {
+  std::vector<RigQuestion> questions = QuestionsAbout(given.board, given.camera);
+  questions.push_back(QuestionAboutSquares(given.board, CentresScale(given.samples)));
+  Views views_px;
+  for (const BoardSample& sample : given.samples) {
+    if (!sample.camera.corners_px.empty()) views_px.push_back(sample.camera.corners_px);
+  }
+  const auto fitted = FittedCamera(views_px, given.board, given.camera);
+  if (!fitted) return questions;
+  for (RigQuestion& each : QuestionsAboutNumbers(given.camera, *fitted)) {
+    questions.push_back(std::move(each));
+  }
+  return questions;
+}
+
 std::vector<BoardSample> WithoutPoints(std::vector<BoardSample> samples) {
   for (BoardSample& sample : samples) {
     sample.lidar.points_lidar_m = {};
@@ -60,7 +97,7 @@ std::optional<Finding> LikelyCause(const std::vector<BoardSample>& samples,
   const auto num_all = static_cast<double>(samples.size());
   std::size_t most = num_before + static_cast<std::size_t>(kLeastGain * num_all);
   std::optional<Finding> likely;
-  for (const RigQuestion& question : QuestionsAbout(task.board, task.camera)) {
+  for (const RigQuestion& question : QuestionsOf(given)) {
     GivenSession session = given;
     question.undo(&session);
     const std::size_t num = NumAgreeing(session.samples, options);

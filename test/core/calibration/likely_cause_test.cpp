@@ -73,6 +73,22 @@ TEST(LikelyCause, FindsTheDecimalPointOfTheSquares) {
   EXPECT_THAT(CauseOf(session), HasSubstr("board.square_m: "));
 }
 
+TEST(LikelyCause, FindsSquaresOfAnotherSize) {
+  for (const double scale : {0.85, 1.18}) {
+    GivenSession session = CleanSession();
+    session.board.square_m *= scale;
+    SeeBoardsAgain(&session);
+    EXPECT_THAT(CauseOf(session), HasSubstr("board's squares")) << scale;
+  }
+}
+
+TEST(LikelyCause, FindsAFocalLengthByTheLensThatTheImagesAskFor) {
+  GivenSession session = CleanSession();
+  session.camera.fx_px *= 1.15;
+  SeeBoardsAgain(&session);
+  EXPECT_THAT(CauseOf(session), HasSubstr("focal length fx"));
+}
+
 TEST(LikelyCause, BlamesNothingForPairsInDisorder) {
   GivenSession session = CleanSession();
   for (std::size_t i = 0; i < session.samples.size() / 2; ++i) {

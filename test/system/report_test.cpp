@@ -27,15 +27,8 @@ class Report : public ::testing::Test {
   std::string Path(const std::string& name) const { return folder_.path() / name; }
 
   void Calibrate(const std::string& rig, const std::string& log, const std::string& out) const {
-    const test::Outcome outcome = test::Run({test::Program("calibrate"),
-                                             "--rig",
-                                             rig,
-                                             "--log",
-                                             log,
-                                             "--out",
-                                             Path(out),
-                                             "--require",
-                                             "any"});
+    const test::Outcome outcome =
+        test::Run({test::Program("calibrate"), "--rig", rig, "--log", log, "--out", Path(out)});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_THAT(outcome.err, Not(HasSubstr("report")));
   }
@@ -130,22 +123,45 @@ TEST_F(SimulatedReport, IsTheSameWhateverPythonsTheUserHas) {
                                            "--log",
                                            Path("raw.lcm"),
                                            "--out",
-                                           Path("again"),
-                                           "--require",
-                                           "any"});
+                                           Path("again")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(ReadWholeFile(Path("again/report.html")), ReadWholeFile(Path("out/report.html")));
 }
 
-// A script that copies the result onto a robot stops by itself.
-TEST_F(SimulatedReport, AResultNotToBeUsedIsWrittenAndIsAnExitStatus) {
-  const test::Outcome outcome = test::Run(
-      {test::Program("calibrate"), "--rig", rig_, "--log", Path("raw.lcm"), "--out", Path("bad")});
+// It is not frames without a board that were in the way.
+TEST_F(SimulatedReport, OfSamplesThatContradictOneAnotherPointsAtThem) {
+  const std::string rig = folder_.Write(
+      "squares.yaml", test::Replaced(ReadWholeFile(rig_), "square_m: 0.095", "square_m: 0.0095"));
+  const test::Outcome outcome = test::Run({test::Program("calibrate"),
+                                           "--rig",
+                                           rig,
+                                           "--log",
+                                           Path("raw.lcm"),
+                                           "--out",
+                                           Path("squares")});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(ReadWholeFile(Path("squares/no_result.html")),
+              AllOf(HasSubstr("frames without a board were not in the way"),
+                    HasSubstr("give board.square_m: 0.095"),
+                    Not(HasSubstr("Not available"))));
+}
+
+// A script that copies the result onto a robot can stop by itself.
+TEST_F(SimulatedReport, AResultThatIsWorseThanRequiredIsWrittenAndIsAnExitStatus) {
+  const test::Outcome outcome = test::Run({test::Program("calibrate"),
+                                           "--rig",
+                                           rig_,
+                                           "--log",
+                                           Path("raw.lcm"),
+                                           "--out",
+                                           Path("required"),
+                                           "--require",
+                                           "usable"});
   EXPECT_EQ(outcome.status, 3);
   EXPECT_THAT(outcome.out, HasSubstr("Do not use it"));
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("Do not use it"), HasSubstr("--require any")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("Do not use it"), HasSubstr("--require")));
   for (const char* name : {"/report.html", "/extrinsic.yaml"}) {
-    EXPECT_EQ(ReadWholeFile(Path("out") + name), ReadWholeFile(Path("bad") + name)) << name;
+    EXPECT_EQ(ReadWholeFile(Path("out") + name), ReadWholeFile(Path("required") + name)) << name;
   }
 }
 

@@ -30,7 +30,7 @@ struct CalibrateArgs {
   BagInput bag;  // instead of input.log
   std::filesystem::path out;
   bool is_json = false;
-  std::string demand = "usable";  ///< Or "good", or "any".
+  std::string demand;  ///< "usable" or "good"; empty: none.
 };
 
 std::string Given(const CalibrateArgs& args) {
@@ -75,11 +75,7 @@ void RunCalibrate(const CalibrateArgs& args) {
 
 int main(int argc, char** argv) {
   using voqcal::RecordingTimes;
-  CLI::App app(
-      "Calibrates a camera against a lidar from a recording of both.\n"
-      "Exit status: 0 done; 1 and 2 errors, no result; 3 there is a result, but its verdict is "
-      "\"do not use\" (or worse than --require asks).",
-      "calibrate");
+  CLI::App app("Calibrates a camera against a lidar from a recording of both.", "calibrate");
   voqcal::CalibrateArgs args;
   app.add_option("--rig", args.rig, "The rig file (YAML): board, camera, channels, options")
       ->required();
@@ -115,9 +111,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", args.is_json, "Print result.json instead of a summary");
   app.add_option("--require",
                  args.demand,
-                 "End with exit status 3 unless the verdict is at least this; all is written as "
-                 "ever")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"any", "usable", "good"}));
+                 "End with exit status 3 unless the verdict is at least this: usable or good")
+      ->check(CLI::IsMember({"usable", "good"}));
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::RunCalibrate(args); });
 }

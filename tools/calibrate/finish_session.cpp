@@ -70,11 +70,10 @@ void FinishSession(const Rig& rig,
 }
 
 void RequireVerdict(const Verdict& verdict, const std::string& demand) {
-  if (demand == "any") return;
+  if (demand.empty()) return;
   const Grade least = demand == "good" ? Grade::kGood : Grade::kLook;
   if (verdict.grade <= least) return;
-  throw DemandNotMet("exit status 3, since the result is not " + demand +
-                     " (--require any takes it all the same): " + verdict.headline);
+  throw DemandNotMet("the result is not " + demand + ", as --require demands: " + verdict.headline);
 }
 
 }  // namespace voqcal

@@ -32,7 +32,7 @@ void FinishSession(const Rig& rig,
                    const SessionFolders& folders,
                    OfflineRun* run);
 
-/// @param demand  "good", "usable" or, for none, "any".
+/// @param demand  "good", "usable" or, for none, empty.
 /// @throws DemandNotMet unless the verdict is as good as was demanded.
 void RequireVerdict(const Verdict& verdict, const std::string& demand);
 

@@ -37,7 +37,7 @@ struct CalibrateRigArgs {
   std::filesystem::path out;
   std::string reference;  ///< Empty: the first lidar.
   RecordingTimes times = RecordingTimes::kAuto;
-  std::string demand = "usable";  ///< Or "good", or "any".
+  std::string demand;  ///< "usable" or "good"; empty: none.
 
   /// The recording, for people.
   std::string Given() const { return bag.empty() ? log.string() : bag.front(); }
@@ -238,9 +238,8 @@ int main(int argc, char** argv) {
       "Calibrates every pair of a rig's lidars and cameras from one recording of all of them, and "
       "joins them to one tree. Pairs that never see the board together are left out, as long as "
       "others join the rig.\n"
-      "Exit status: 0 done; 1 and 2 errors, among them a rig that falls apart; 3 there is a "
-      "result, "
-      "but its verdict is \"do not use\" (or worse than --require asks).",
+      "Exit status: 0 done; 1 and 2 errors, among them a rig that falls apart; 3 the result is not "
+      "what --require demands.",
       "calibrate_rig");
   voqcal::CalibrateRigArgs args;
   app.add_option("rig",
@@ -283,9 +282,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"auto", "stamps", "log"}));
   app.add_option("--require",
                  args.demand,
-                 "End with exit status 3 unless the verdict is at least this; all is written as "
-                 "ever")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"any", "usable", "good"}));
+                 "End with exit status 3 unless the verdict is at least this: usable or good")
+      ->check(CLI::IsMember({"usable", "good"}));
   return voqcal::RunTool(&app, argc, argv, [&args] { voqcal::CalibrateRig(args); });
 }

@@ -286,7 +286,7 @@ void SampleCollectorNode::OnCommand(const command_t& message) {
 void SampleCollectorNode::Reset(std::int64_t utime) {
   session_.Reset();
   log_sha256_ = session_.Sha256();
-  picker_.ForgetPoses();
+  picker_.StartAnew();
   CancelCapture();
   second_look_.Clear();
   misses_.Clear();

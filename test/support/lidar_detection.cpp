@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "core/geometry/rigid.hpp"
 #include "core/lidar_detection/accumulating_detector.hpp"
@@ -118,6 +119,17 @@ Eigen::Isometry3d DrawBoard(const LidarDetectionOptions& options,
   throw std::runtime_error("no place for a board in the hall of seed " + std::to_string(seed));
 }
 
+/// Of an error, what lies along directions in which the centre is known: between sides that are
+/// open it may rightly be anywhere.
+Eigen::Vector3d KnownPart(const Eigen::Vector3d& error_m, const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  Eigen::Vector3d along_m = axes.eigenvectors().transpose() * error_m;
+  for (int i = 0; i < 3; ++i) {
+    if (axes.eigenvalues()[i] > std::pow(kWrongCentreM / 2, 2)) along_m[i] = 0.0;
+  }
+  return along_m;
+}
+
 void Judge(const LidarBoard& found, LidarSighting* sighting) {
   const Eigen::Isometry3d& truth = sighting->T_lidar_board;
   const BoardPose& pose = found.pose;
@@ -129,9 +141,10 @@ void Judge(const LidarBoard& found, LidarSighting* sighting) {
   sighting->num_measured_sides = NumMeasuredSides(found);
   sighting->centre_error_m = centre_error_m.norm();
   sighting->normal_error_rad = AngleBetween(pose.normal, truth.linear().col(2));
-  const bool is_right = sighting->centre_error_m < kWrongCentreM && angle_rad < kWrongAngleRad;
-  sighting->verdict = is_right ? SightingVerdict::kRight : SightingVerdict::kWrong;
   const Eigen::Matrix3d centre_covariance = pose.covariance.bottomRightCorner<3, 3>();
+  const bool is_right = KnownPart(centre_error_m, centre_covariance).norm() < kWrongCentreM &&
+                        angle_rad < kWrongAngleRad;
+  sighting->verdict = is_right ? SightingVerdict::kRight : SightingVerdict::kWrong;
   sighting->centre_nees = centre_error_m.dot(centre_covariance.ldlt().solve(centre_error_m)) / 3;
   // A normal's error is a tilt about two directions in the board's plane.
   Eigen::Matrix<double, 3, 2> across;
@@ -155,7 +168,8 @@ std::string LidarSighting::Line() const {
   if (verdict != SightingVerdict::kMissed) {
     text << ", centre off by " << centre_error_m << " m, normal by " << normal_error_rad / kDeg
          << " deg, found at " << found.centre_m.transpose() << " m facing "
-         << found.normal.transpose() << ", " << num_measured_sides << " sides measured";
+         << found.normal.transpose() << ", " << num_measured_sides << " sides measured, NEES "
+         << centre_nees << ", " << normal_nees;
   }
   if (num_frames > 1) text << " in " << num_frames << " sweeps";
   text << "; " << hits.num_points << " points, " << hits.num_rings << " rings; t_m "
@@ -184,11 +198,10 @@ Props PropsAt(const LidarDetectionOptions& options,
 }
 
 /// The truth, off by chance as far as it says.
-std::optional<BoardPrior> PriorOf(const LidarDetectionOptions& options,
-                                  const Eigen::Isometry3d& T_lidar_board,
-                                  std::uint32_t seed,
-                                  int board) {
-  if (!options.has_prior) return {};
+BoardPrior PriorOf(const LidarDetectionOptions& options,
+                   const Eigen::Isometry3d& T_lidar_board,
+                   std::uint32_t seed,
+                   int board) {
   const KeyedNoise noise(seed, NoiseUse::kStops, 1000 + board);
   BoardPrior prior;
   prior.covariance.diagonal() << Eigen::Vector3d::Constant(options.prior_sigma_rad).cwiseAbs2(),
@@ -211,16 +224,22 @@ std::optional<BoardPrior> PriorOf(const LidarDetectionOptions& options,
 LidarBoardSighting Sight(const LidarSimulator& lidar,
                          const Eigen::Isometry3d& T_lidar_board,
                          const LidarBoardOptions& options,
-                         const std::optional<BoardPrior>& prior,
+                         const BoardPrior& prior,
+                         ExpectedBoard expected,
                          std::int64_t first_us,
                          std::int64_t last_us) {
   const auto sweep = [&](std::int64_t utime) { return lidar.Sweep(T_lidar_board, utime); };
-  if (prior) return {DetectLidarBoard(sweep(last_us), Board(), options, nullptr, prior)};
+  const auto expect = [&] {
+    return LidarBoardSighting{DetectLidarBoard(sweep(last_us), Board(), options, nullptr, prior)};
+  };
+  if (expected == ExpectedBoard::kAlways) return expect();
   AccumulatingDetector detector(Board(), options);
   for (std::int64_t utime = first_us; utime < last_us; utime += kSweepUs) {
     detector.Detect(sweep(utime), utime);
   }
-  return detector.Detect(sweep(last_us), last_us);
+  LidarBoardSighting found = detector.Detect(sweep(last_us), last_us);
+  const bool is_unsure = !found.boards && expected == ExpectedBoard::kWhereUnsure;
+  return is_unsure ? expect() : found;
 }
 
 }  // namespace
@@ -252,8 +271,13 @@ std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options
         lidar.emplace(simulation, Board(), Room(Hall(), props));
       }
       sighting.hits = lidar->CountBoardHits(sighting.T_lidar_board, last_us);
-      const auto prior = PriorOf(options, sighting.T_lidar_board, simulation.seed, board);
-      const auto found = Sight(*lidar, sighting.T_lidar_board, detector, prior, first_us, last_us);
+      const auto found = Sight(*lidar,
+                               sighting.T_lidar_board,
+                               detector,
+                               PriorOf(options, sighting.T_lidar_board, simulation.seed, board),
+                               options.expected,
+                               first_us,
+                               last_us);
       sighting.num_frames = static_cast<int>(found.accumulated_us / kSweepUs) + 1;
       if (found.boards) {
         Judge(found.boards->front(), &sighting);

@@ -15,6 +15,9 @@
 
 namespace voqcal::test {
 
+/// When the detector is told where the board is, as the camera's board and a rough extrinsic do.
+enum class ExpectedBoard { kNever, kWhereUnsure, kAlways };
+
 /// Boards in halls full of people, tripods, doors, furniture and a second board of the wrong size.
 struct LidarDetectionOptions {
   ScanPattern pattern = ScanPattern::kVlp16;
@@ -28,8 +31,8 @@ struct LidarDetectionOptions {
   int num_frames = 1;
   std::optional<BoardContact> contact;  ///< What touches every board.
   int num_joined = 0;  ///< Sides along which a leaf in the board's plane begins, as well.
-  /// The board is expected: at the truth, off by as much as the prior says (1 sigma).
-  bool has_prior = false;
+  /// The board is expected at the truth, off by as much as the prior says (1 sigma).
+  ExpectedBoard expected = ExpectedBoard::kNever;
   double prior_sigma_rad = 0.015;
   double prior_sigma_m = 0.02;
 };
@@ -63,8 +66,8 @@ struct LidarSighting {
 
 /// Boards in any attitude up to 50 degrees from facing the lidar, each wholly within its view,
 /// hidden by nothing and 15 cm or more from anything but what is asked to touch it. Wrong: the
-/// first candidate's centre is off by more than 10 cm, or its axes by more than 10 degrees (but for
-/// half a turn).
+/// first candidate's centre is off by more than 10 cm in directions that it claims to know to 5 cm,
+/// or its axes by more than 10 degrees (but for half a turn).
 std::vector<LidarSighting> SightLidarBoards(const LidarDetectionOptions& options,
                                             const LidarBoardOptions& detector);
 

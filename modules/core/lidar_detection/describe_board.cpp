@@ -11,6 +11,7 @@
 
 #include "core/geometry/rigid.hpp"
 #include "core/lidar/plane_fit.hpp"
+#include "core/lidar_detection/lengthened_sides.hpp"
 #include "core/lidar_detection/outline_checks.hpp"
 
 namespace voqcal {
@@ -19,7 +20,7 @@ namespace {
 // Of [rotation_rad; translation_m], left side. The outline gives the shift in the plane and the
 // turn about the normal; the plane gives the tilts, and an offset that moves the centre along its
 // ray, because the outline was seen along rays. Covers noise, offsets of single scan lines, and
-// the unknown spill and thickness; not what all lines share, nor a board that is bent.
+// the unknown spill and thickness, and a bar along a side; not what all lines share, nor a board that is bent.
 Matrix6d CovarianceOf(const Eigen::Isometry3d& T_lidar_board,
                       const Measurement& m,
                       const PointCloud& cloud_lidar_m,
@@ -38,7 +39,8 @@ Matrix6d CovarianceOf(const Eigen::Isometry3d& T_lidar_board,
   const Eigen::Vector3d flat(
       m.model.height_m / std::sqrt(12.0), m.model.width_m / std::sqrt(12.0), 1.0);
   const Eigen::Matrix3d unevenness = (kFlatM * flat.cwiseInverse()).cwiseAbs2().asDiagonal();
-  const Eigen::Matrix3d outline = m.outline.PoseCovariance();
+  Eigen::Matrix3d outline = m.outline.PoseCovariance();
+  outline.diagonal().head<2>() += LengtheningSigmaM(m).cwiseAbs2();
   const Eigen::Vector3d ray = centre_m.normalized();
   Eigen::Matrix<double, 6, 3> from_plane = Eigen::Matrix<double, 6, 3>::Zero();
   from_plane.block<3, 1>(0, 0) = R.col(0);

@@ -43,9 +43,9 @@ constexpr LengthTolerance kExpectedOfOne{0.15, 0.0, 0.15};
 constexpr LengthTolerance kExpectedOfMean{0.08, 0.0, 0.08};
 constexpr double kMaxUnexplainedIfExpected = 0.4;
 
-/// Two sides farther apart by this are not both the board's: spill and thickness lengthen by up to
-/// 25 mm, a bar along a side by 40 and more.
-constexpr double kLengthenedM = 0.03;
+/// Two sides farther apart by this than the other two suggest are not both the board's: in halls a
+/// bar of 50 mm along a side lengthens by 25 to 50 mm.
+constexpr double kLengthenedM = 0.02;
 
 /// Share of the 4 x 4 fields with hits: of a board that is measured on three sides, whose fourth
 /// may be hidden; and of one where less is measured.

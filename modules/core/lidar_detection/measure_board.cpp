@@ -16,6 +16,7 @@
 #include "core/lidar_detection/board_measurement.hpp"
 #include "core/lidar_detection/describe_board.hpp"
 #include "core/lidar_detection/detection_tolerances.hpp"
+#include "core/lidar_detection/lengthened_sides.hpp"
 #include "core/lidar_detection/outline_checks.hpp"
 #include "core/lidar_detection/outline_doubt.hpp"
 #include "core/lidar_detection/outline_edges.hpp"
@@ -153,24 +154,6 @@ void LookAround(Measurement* m) {
   m->sides =
       LookAtSides(m->view.Outline(), m->view.Blocked(), m->model, m->outline.pose, SpacingM(*m));
   m->telling = TellingBeams(m->view.Outline(), m->model, m->outline.pose, m->sides);
-}
-
-/// A bar along a whole side, as a frame or an easel has, makes the board look longer; a post or the
-/// ground, which join it in part, tell on which side. What is past that side says nothing then.
-void OpenLengthenedSides(Measurement* m) {
-  constexpr int kFew = 2;  // hits well past a side may be stray
-  for (std::size_t i = 0; i < 4; ++i) {
-    const SideEvidence& side = m->sides[i];
-    const std::size_t opposite = (i + 2) % 4;
-    const SideEvidence& opposite_side = m->sides[opposite];
-    if (side.view != SideView::kMeasured || opposite_side.view != SideView::kMeasured) continue;
-    if (side.num_joined <= kFew || opposite_side.num_joined > kFew) continue;
-    const auto edges = MeasureEdges(m->telling, m->model, m->outline.pose);
-    if (edges[i].offset_m + edges[opposite].offset_m < kLengthenedM) continue;
-    m->sides[i].view = SideView::kJoined;
-    m->sides[i].past.fill(SideEvidence::Past::kPlane);
-    m->telling = TellingBeams(m->view.Outline(), m->model, m->outline.pose, m->sides);
-  }
 }
 
 /// Takes all the rectangle's points. False if too few are left.

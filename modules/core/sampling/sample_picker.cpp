@@ -144,9 +144,7 @@ std::vector<PickerDecision> SamplePicker::RestartIfBack(std::int64_t utime, std:
   constexpr double kMaxOutOfOrderUs = 2e6;  // networks reorder by less
   if (static_cast<double>(newest) - static_cast<double>(utime) <= kMaxOutOfOrderUs) return {};
   std::vector<PickerDecision> decisions = Judge(true);
-  window_.clear();
-  followed_.clear();
-  rest_begin_.reset();
+  ForgetWaiting();
   newest_lidar_utime_ = newest_camera_utime_ = std::numeric_limits<std::int64_t>::min();
   return decisions;
 }
@@ -173,9 +171,18 @@ void SamplePicker::SetKnown(const std::vector<BoardSample>& samples) {
   }
 }
 
-void SamplePicker::ForgetPoses() {
+void SamplePicker::StartAnew() {
+  ForgetWaiting();
   known_T_camera_board_.clear();
   unsure_T_camera_board_.clear();
+}
+
+void SamplePicker::ForgetWaiting() {
+  lidar_.clear();
+  camera_.clear();
+  window_.clear();
+  followed_.clear();
+  rest_begin_.reset();
 }
 
 int SamplePicker::NearestCameraFrame(std::int64_t utime) const {

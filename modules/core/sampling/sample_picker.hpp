@@ -100,8 +100,9 @@ class SamplePicker {
   /// The samples that the session has: new poses must differ from them. Unsure stops stay, as
   /// whoever keeps them does: the same stop must not come twice.
   void SetKnown(const std::vector<BoardSample>& samples);
-  /// Forgets samples and unsure stops.
-  void ForgetPoses();
+  /// Forgets samples, unsure stops and what waits: a sample of the new session is made of
+  /// sightings that come from now on.
+  void StartAnew();
 
  private:
   struct Pair {
@@ -111,6 +112,7 @@ class SamplePicker {
 
   std::vector<PickerDecision> RestartIfBack(std::int64_t utime, std::int64_t newest);
   std::vector<PickerDecision> Judge(bool is_flushing);
+  void ForgetWaiting();
   /// Index in camera_ of the frame nearest to `utime` within max_pair_offset_s; -1 if there is
   /// none.
   int NearestCameraFrame(std::int64_t utime) const;

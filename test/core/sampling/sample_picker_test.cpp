@@ -202,6 +202,24 @@ TEST(SamplePicker, GoesOnWhereADriverIsStartedAgainInThePast) {
   EXPECT_THAT(Outcomes(decisions), testing::ElementsAre("accepted", "accepted", "accepted"));
 }
 
+// The camera's detector lags: its last sightings come after the operator's "reset".
+TEST(SamplePicker, MakesNoSampleOfWhatWaitedWhenItStartsAnew) {
+  SamplePicker picker(Board(), {});
+  std::vector<PickerDecision> decisions;
+  for (int frame = 0; frame < 5; ++frame) Append(picker.Add(Lidar(frame, 0.5)), &decisions);
+  picker.StartAnew();
+  for (int frame = 0; frame < 5; ++frame) Append(picker.Add(Camera(frame, 0.5)), &decisions);
+  Append(picker.Flush(), &decisions);
+  EXPECT_THAT(Outcomes(decisions), testing::Each("no lidar frame at that time"));
+  decisions.clear();
+  for (int frame = 5; frame < 8; ++frame) {
+    Append(picker.Add(Lidar(frame, 0.5)), &decisions);
+    Append(picker.Add(Camera(frame, 0.5)), &decisions);
+  }
+  Append(picker.Flush(), &decisions);
+  EXPECT_THAT(Outcomes(decisions), testing::Contains("accepted"));
+}
+
 TEST(SamplePicker, AccountsForCameraFramesWithoutALidarFrame) {
   SamplePickerOptions options;
   options.num_still_frames = 1;

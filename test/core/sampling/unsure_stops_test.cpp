@@ -73,7 +73,7 @@ TEST(SamplePicker, TellsOfAStopOnceThoughASampleIsDiscarded) {
   EXPECT_EQ(NumStopsAgain(0, &picker), 1u);
   picker.SetKnown({});  // another place's sample was discarded: the stop is still kept
   EXPECT_EQ(NumStopsAgain(3, &picker), 0u);
-  picker.ForgetPoses();
+  picker.StartAnew();
   EXPECT_EQ(NumStopsAgain(6, &picker), 1u);
 }
 

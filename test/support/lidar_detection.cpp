@@ -27,6 +27,7 @@ constexpr double kMaxTiltDeg = 35.0;  // about each of two axes: 50 together
 constexpr double kClearanceM = 0.15;
 constexpr double kViewMarginRad = 0.3 * kDeg;  // a beam's width and a row's step
 constexpr double kWrongCentreM = 0.10;
+constexpr double kKnownM = 0.05;  // 1 sigma
 constexpr double kWrongAngleRad = 10.0 * kDeg;
 
 BoardSpec Board() { return {0.61, 0.85, 0.095, 5, 7, 0.0, 0.0}; }
@@ -119,15 +120,27 @@ Eigen::Isometry3d DrawBoard(const LidarDetectionOptions& options,
   throw std::runtime_error("no place for a board in the hall of seed " + std::to_string(seed));
 }
 
-/// Of an error, what lies along directions in which the centre is known: between sides that are
-/// open it may rightly be anywhere.
-Eigen::Vector3d KnownPart(const Eigen::Vector3d& error_m, const Eigen::Matrix3d& covariance) {
+/// A centre's error along the directions in which it is known: between sides that are open it may
+/// rightly be anywhere.
+struct KnownError {
+  double norm_m = 0.0;
+  double nees = 0.0;  ///< Over the number of these directions.
+};
+
+KnownError KnownErrorOf(const Eigen::Vector3d& error_m, const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
-  Eigen::Vector3d along_m = axes.eigenvectors().transpose() * error_m;
+  double square_m2 = 0.0;
+  double nees = 0.0;
+  int num_known = 0;
   for (int i = 0; i < 3; ++i) {
-    if (axes.eigenvalues()[i] > std::pow(kWrongCentreM / 2, 2)) along_m[i] = 0.0;
+    const double variance_m2 = axes.eigenvalues()[i];
+    if (variance_m2 > kKnownM * kKnownM) continue;
+    const double along_m = axes.eigenvectors().col(i).dot(error_m);
+    square_m2 += along_m * along_m;
+    nees += along_m * along_m / variance_m2;
+    ++num_known;
   }
-  return along_m;
+  return {std::sqrt(square_m2), num_known > 0 ? nees / num_known : LidarSighting::kUnmeasured};
 }
 
 void Judge(const LidarBoard& found, LidarSighting* sighting) {
@@ -141,11 +154,11 @@ void Judge(const LidarBoard& found, LidarSighting* sighting) {
   sighting->num_measured_sides = NumMeasuredSides(found);
   sighting->centre_error_m = centre_error_m.norm();
   sighting->normal_error_rad = AngleBetween(pose.normal, truth.linear().col(2));
-  const Eigen::Matrix3d centre_covariance = pose.covariance.bottomRightCorner<3, 3>();
-  const bool is_right = KnownPart(centre_error_m, centre_covariance).norm() < kWrongCentreM &&
-                        angle_rad < kWrongAngleRad;
+  const KnownError known =
+      KnownErrorOf(centre_error_m, pose.covariance.bottomRightCorner<3, 3>());
+  const bool is_right = known.norm_m < kWrongCentreM && angle_rad < kWrongAngleRad;
   sighting->verdict = is_right ? SightingVerdict::kRight : SightingVerdict::kWrong;
-  sighting->centre_nees = centre_error_m.dot(centre_covariance.ldlt().solve(centre_error_m)) / 3;
+  sighting->centre_nees = known.nees;
   // A normal's error is a tilt about two directions in the board's plane.
   Eigen::Matrix<double, 3, 2> across;
   across.col(0) = pose.normal.unitOrthogonal();

@@ -55,6 +55,7 @@ struct LidarSighting {
   double centre_error_m = kUnmeasured;
   double normal_error_rad = kUnmeasured;
   /// Squared errors by their covariance, over their number of dimensions: 1 in the mean if honest.
+  /// Of the centre, those dimensions count that are known to 5 cm.
   double centre_nees = kUnmeasured;
   double normal_nees = kUnmeasured;
 

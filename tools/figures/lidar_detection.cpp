@@ -179,6 +179,7 @@ void RunOpenSides(const Flags& flags) {
         // Where a side is open the centre may rightly be off: the covariance judges it.
         sighting.verdict = SightingVerdict::kRight;
         by_sides[static_cast<std::size_t>(sighting.num_measured_sides)].Add(sighting);
+        if (flags.is_list && IsFailure(sighting)) std::cout << "    " << sighting.Line() << '\n';
       }
     }
   }

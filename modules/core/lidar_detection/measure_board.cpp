@@ -127,6 +127,24 @@ double NoiseBandM(const std::vector<Eigen::Vector3d>& points_m, const PlaneFit& 
   return std::max(kLeastM, kSigmas * kMedianToSigma * *middle);
 }
 
+/// The prior in the plane. Where the outline is measured it must not count, as the extrinsic that
+/// it comes from will be judged by the board: it pulls with a tenth of a measured side's strength
+/// at most.
+ExpectedRectangle ExpectedIn(const PlaneFrame& frame, const BoardPrior& prior) {
+  constexpr double kLeastSigma = 0.02;  // metres and radians
+  const Eigen::Matrix3d R = prior.T_lidar_board.linear();
+  const Eigen::Matrix3d shift_m2 = R.transpose() * prior.covariance.bottomRightCorner<3, 3>() * R;
+  const Eigen::Matrix3d turn_rad2 = R.transpose() * prior.covariance.topLeftCorner<3, 3>() * R;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  covariance.topLeftCorner<2, 2>() = shift_m2.topLeftCorner<2, 2>();
+  covariance(2, 2) = turn_rad2(2, 2);
+  covariance.diagonal().array() += kLeastSigma * kLeastSigma;
+  const Eigen::Vector3d width_axis = R.col(0);
+  return {{frame.ToPlane(prior.T_lidar_board.translation()),
+           std::atan2(frame.e2.dot(width_axis), frame.e1.dot(width_axis))},
+          covariance.inverse()};
+}
+
 /// The plane of the points in the outline, and where the beams meet it. False if too few points are
 /// left.
 bool RefinePlane(const PointCloud& cloud_lidar_m, Measurement* m) {
@@ -163,6 +181,7 @@ bool Finish(const PointCloud& cloud_lidar_m, Measurement* m) {
   OpenLengthenedSides(m);
   m->outline = EvaluateOutline(m->telling, m->model, m->outline);
   m->outline = SettleOutline(m->telling, m->model, m->outline);
+  if (m->model.expected) m->outline = WithoutExpected(m->model, m->outline);
   m->board_hits = m->view.HitsInside(m->frame, m->model, m->outline.pose, 0.0);
   m->positions_m = EvenlyShaded(*m, m->frame.plane, cloud_lidar_m);
   return m->board_hits.size() >= kMinBoardHits;
@@ -197,24 +216,33 @@ OutlineModel AmongThings(OutlineModel model) {
 /// the beams meet it; then what is past its sides says which beams tell of it. From where the board
 /// is expected they are told at once: what joins it would draw a rough fit away.
 std::optional<NoLidarBoard> FitPlaneAndOutline(const PointCloud& cloud_lidar_m,
-                                               bool is_expected,
+                                               const BoardPrior* prior,
                                                Measurement* m) {
+  constexpr int kMaxRounds = 6;  // beams that were told to be of another thing hold the outline
+  constexpr double kSettledM = 0.001;
   for (const double first_blur_m : {SearchBlurM(m->model) / 2, 3 * m->model.blur_m}) {
     LookAround(m);
     if (!AgreementOf(*m).IsBoardLike()) return Because(LidarBoardMiss::kSizeMismatch);
     if (!RefinePlane(cloud_lidar_m, m)) return Because(LidarBoardMiss::kNoPlane);
-    if (is_expected) LookAround(m);
-    m->outline = SharpenOutline(is_expected ? m->telling : m->view.Outline(),
+    if (prior != nullptr) {
+      m->model.expected = ExpectedIn(m->frame, *prior);
+      LookAround(m);
+    }
+    m->outline = SharpenOutline(prior != nullptr ? m->telling : m->view.Outline(),
                                 AmongThings(m->model),
                                 m->outline.pose,
                                 first_blur_m);
   }
   LookAround(m);
   if (!RefinePlane(cloud_lidar_m, m)) return Because(LidarBoardMiss::kNoPlane);
-  for (int i = 0; i < 2; ++i) {
+  if (prior != nullptr) m->model.expected = ExpectedIn(m->frame, *prior);
+  for (int i = 0; i < kMaxRounds; ++i) {
     LookAround(m);
     OpenLengthenedSides(m);
+    const Eigen::Vector2d before_m = m->outline.pose.centre_m;
     m->outline = RefineOutline(m->telling, m->model, m->outline.pose);
+    const bool is_settled = (m->outline.pose.centre_m - before_m).norm() < kSettledM;
+    if (i > 0 && is_settled) break;
   }
   return {};
 }
@@ -300,7 +328,7 @@ Expected<MeasuredBoard, NoLidarBoard> MeasureBoard(const PlanarPatch& patch,
   m.outline = SearchOutline(m.view.Outline(), AmongThings(m.model), Eigen::Vector2d::Zero());
   if (m.outline.Unexplained() > kMaxUnexplainedRoughly)
     return Because(LidarBoardMiss::kSizeMismatch);
-  if (auto none = FitPlaneAndOutline(cloud_lidar_m, false, &m)) return *none;
+  if (auto none = FitPlaneAndOutline(cloud_lidar_m, nullptr, &m)) return *none;
   m.outline.pose = Upright(m.frame, m.outline.pose);
   if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
   return Decide(m, false, beams, cloud_lidar_m, board, options);
@@ -327,7 +355,7 @@ Expected<MeasuredBoard, NoLidarBoard> MeasureExpectedBoard(const BoardPrior& pri
                     std::atan2(m.frame.e2.dot(width_axis), m.frame.e1.dot(width_axis))};
   m.outline.spill_m = m.model.spill_m;
   m.outline.thickness_m = m.model.thickness_m;
-  if (auto none = FitPlaneAndOutline(cloud_lidar_m, true, &m)) return *none;
+  if (auto none = FitPlaneAndOutline(cloud_lidar_m, &prior, &m)) return *none;
   if (!Finish(cloud_lidar_m, &m)) return Because(LidarBoardMiss::kNoPlane);
   auto decided = Decide(m, true, beams, cloud_lidar_m, board, options);
   if (decided && !FitsIn(decided->board.pose, prior)) return Because(LidarBoardMiss::kNoPlane);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace voqcal {
@@ -144,9 +146,43 @@ double ThicknessSurprise(const OutlineModel& model, const OutlineFit& at) {
   return (at.thickness_m - model.thickness_m) / model.thickness_sigma_m;
 }
 
-/// Of spill and thickness alone.
+/// [x; y; angle] of the fit from the expected rectangle, along the latter's axes.
+Eigen::Vector3d OffExpected(const ExpectedRectangle& expected, const OutlineFit& at) {
+  Eigen::Vector3d off;
+  off << expected.pose.T_rectangle_plane() * at.pose.centre_m,
+      std::remainder(at.pose.angle_rad - expected.pose.angle_rad, 2 * M_PI);
+  return off;
+}
+
+/// By [x; y; angle] of the fit, x and y along its own axes.
+Eigen::Matrix3d JacobianOfOff(const ExpectedRectangle& expected, const OutlineFit& at) {
+  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
+  J.topLeftCorner<2, 2>() =
+      Eigen::Rotation2Dd(at.pose.angle_rad - expected.pose.angle_rad).toRotationMatrix();
+  return J;
+}
+
+/// Of all but the beams.
 double LogPrior(const OutlineModel& model, const OutlineFit& at) {
-  return LogGaussian(SpillSurprise(model, at)) + LogGaussian(ThicknessSurprise(model, at));
+  const double log_prior =
+      LogGaussian(SpillSurprise(model, at)) + LogGaussian(ThicknessSurprise(model, at));
+  if (!model.expected) return log_prior;
+  const Eigen::Vector3d off = OffExpected(*model.expected, at);
+  return log_prior - off.dot(model.expected->information * off) / 2;
+}
+
+/// Its share of gradient and information.
+void AddPrior(const OutlineModel& model, const OutlineFit& at, OutlineSlope* slope) {
+  slope->gradient[3] -= SpillSurprise(model, at) / model.spill_sigma_m;
+  slope->gradient[4] -= ThicknessSurprise(model, at) / model.thickness_sigma_m;
+  slope->fit.information(3, 3) += 1 / (model.spill_sigma_m * model.spill_sigma_m);
+  slope->fit.information(4, 4) += 1 / (model.thickness_sigma_m * model.thickness_sigma_m);
+  if (!model.expected) return;
+  const ExpectedRectangle& expected = *model.expected;
+  const Eigen::Matrix3d J = JacobianOfOff(expected, at);
+  slope->gradient.head<3>() -=
+      J.transpose() * expected.information * OffExpected(expected, at);
+  slope->fit.information.topLeftCorner<3, 3>() += J.transpose() * expected.information * J;
 }
 
 /// Gradient and information, summed over beams.
@@ -206,6 +242,19 @@ OutlineFit EvaluateOutline(const std::vector<OutlineBeam>& beams,
   return DifferentiateOutline(beams, model, at).fit;
 }
 
+OutlineFit WithoutExpected(const OutlineModel& model, OutlineFit fit) {
+  constexpr double kLeast = 1.0;  // per m2 or rad2: nothing is known
+  const Eigen::Matrix3d J = JacobianOfOff(*model.expected, fit);
+  const Eigen::Matrix3d with = fit.PoseCovariance().inverse();
+  const Eigen::Matrix3d without = with - J.transpose() * model.expected->information * J;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(without);
+  const Eigen::Matrix3d told = axes.eigenvectors() *
+                               axes.eigenvalues().cwiseMax(kLeast).asDiagonal() *
+                               axes.eigenvectors().transpose();
+  fit.information.topLeftCorner<3, 3>() += told - with;
+  return fit;
+}
+
 OutlineSlope DifferentiateOutline(const std::vector<OutlineBeam>& beams,
                                   const OutlineModel& model,
                                   const OutlineFit& at) {
@@ -243,10 +292,7 @@ OutlineSlope DifferentiateOutline(const std::vector<OutlineBeam>& beams,
   slope.fit.spill_m = at.spill_m;
   slope.fit.thickness_m = at.thickness_m;
   slope.fit.log_likelihood = LogPrior(model, at) + others + near_sides.Value();
-  slope.gradient[3] = -SpillSurprise(model, at) / model.spill_sigma_m;
-  slope.gradient[4] = -ThicknessSurprise(model, at) / model.thickness_sigma_m;
-  slope.fit.information(3, 3) = 1 / (model.spill_sigma_m * model.spill_sigma_m);
-  slope.fit.information(4, 4) = 1 / (model.thickness_sigma_m * model.thickness_sigma_m);
+  AddPrior(model, at, &slope);
   sums.AddTo(&slope);
   return slope;
 }

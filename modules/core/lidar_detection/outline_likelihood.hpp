@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -32,6 +33,13 @@ struct RectanglePose {
   Eigen::Isometry2d T_rectangle_plane() const;
 };
 
+/// Where a rectangle is expected: a pull that keeps a fit near where the beams do not tell.
+struct ExpectedRectangle {
+  RectanglePose pose;
+  /// Of the rectangle's [x; y; angle] about it, x and y along its own axes (m, m, rad).
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+};
+
 /// Probability that a beam hits: the unit step at each side of the rectangle, blurred by the beam's
 /// footprint, but for a share of beams that hit beyond or miss inside:
 ///     p = stray_hits + (1 - stray_hits - stray_misses) * prod_k L((m_k + grow_k) / blur_k),
@@ -60,6 +68,7 @@ struct OutlineModel {
   /// Ray to the board's centre over its depth below the face, along the rectangle's axes: how far
   /// the ray moves in the plane for each metre that it passes through the board.
   Eigen::Vector2d lean = Eigen::Vector2d::Zero();
+  std::optional<ExpectedRectangle> expected;
 
   /// Along x and y: a direction w in the plane, seen at lean s, is stretched by sqrt(1 + (w .
   /// s)^2).
@@ -98,6 +107,9 @@ double OutlineLogLikelihood(const std::vector<OutlineBeam>& beams,
 OutlineFit EvaluateOutline(const std::vector<OutlineBeam>& beams,
                            const OutlineModel& model,
                            const OutlineFit& at);
+
+/// What the beams alone tell of the pose: the pull of model.expected taken out of the information.
+OutlineFit WithoutExpected(const OutlineModel& model, OutlineFit fit);
 
 /// A place on the likelihood and which way is up.
 struct OutlineSlope {

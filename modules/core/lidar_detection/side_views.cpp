@@ -164,13 +164,21 @@ std::vector<OutlineBeam> TellingBeams(const std::vector<OutlineBeam>& beams,
                                       const RectanglePose& pose,
                                       const std::array<SideEvidence, 4>& sides) {
   const SidePlaces places(model, pose);
-  const auto goes_on = [&sides](std::size_t side, std::size_t part) {
+  // Where the view ends hits may be of something else; in a cropped cloud they are all there is.
+  std::array<bool, 4> is_cut_off{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const SideView opposite = sides[(i + 2) % 4].view;
+    is_cut_off[i] = sides[i].view == SideView::kCutOff &&
+                    (opposite == SideView::kMeasured || opposite == SideView::kJoined);
+  }
+  const auto goes_on = [&](std::size_t side, std::size_t part) {
     const Past past = sides[side].past[part];
-    return past == Past::kPlane || past == Past::kTouch;
+    return past == Past::kPlane || past == Past::kTouch || is_cut_off[side];
   };
-  const bool is_alone = std::all_of(sides.begin(), sides.end(), [](const SideEvidence& side) {
-    return side.Count(Past::kPlane) + side.Count(Past::kTouch) == 0;
-  });
+  bool is_alone = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    is_alone &= !is_cut_off[i] && sides[i].Count(Past::kPlane) + sides[i].Count(Past::kTouch) == 0;
+  }
   if (is_alone) return beams;
   // What joins a side may reach into the rectangle, unless the side opposite tells where this one
   // is.

@@ -15,8 +15,9 @@
 namespace voqcal {
 namespace {
 
-constexpr int kLeastVotes = 4;
-constexpr int kLeastVotesForGuess = 2;
+constexpr std::size_t kLeastVotes = 4;
+constexpr std::size_t kLeastSureVotes = 3;
+constexpr std::size_t kLeastVotesForGuess = 2;
 constexpr double kMaxSquaredSigmas = 20.0;  // of six dimensions: 0.27 % of right ones are farther
 // Beside the detectors' noise: ranges that are all off, a board that moves between the two sensors'
 // times. (1 sigma)
@@ -87,7 +88,10 @@ RoughExtrinsic ExtrinsicBy(const Ballot& ballot, int num_quarters, const CameraM
 // Those who agree with an extrinsic: at most one candidate of each stop.
 struct Votes {
   std::vector<const BoardSample*> samples;
+  std::size_t num_sure = 0;
   double sum_squared_sigmas = 0.0;
+
+  bool AreEnough() const { return samples.size() >= kLeastVotes || num_sure >= kLeastSureVotes; }
 
   bool operator<(const Votes& other) const {
     if (samples.size() != other.samples.size()) return samples.size() < other.samples.size();
@@ -97,6 +101,7 @@ struct Votes {
 
 Votes VotesFor(const RoughExtrinsic& rough,
                const std::vector<Ballot>& ballots,
+               std::size_t num_sure,
                const CameraModel& camera) {
   Votes votes;
   for (std::size_t i = 0; i < ballots.size();) {
@@ -113,6 +118,7 @@ Votes VotesFor(const RoughExtrinsic& rough,
     }
     if (nearest == nullptr) continue;
     votes.samples.push_back(nearest);
+    if (stop < num_sure) ++votes.num_sure;
     votes.sum_squared_sigmas += least;
   }
   return votes;
@@ -138,34 +144,36 @@ std::vector<RoughExtrinsic> Hypotheses(const std::vector<Ballot>& ballots,
 }  // namespace
 
 std::optional<RoughExtrinsic> VoteForExtrinsic(const std::vector<BoardSample>& stops,
+                                               std::size_t num_sure,
                                                const CameraModel& camera,
                                                const std::optional<Eigen::Isometry3d>& guess) {
   constexpr int kRounds = 3;
   const std::vector<Ballot> ballots = BallotsOf(stops);
   RoughExtrinsic best;
   Votes votes;
-  int least_votes = kLeastVotes;
   for (const RoughExtrinsic& hypothesis : Hypotheses(ballots, camera)) {
-    Votes its_votes = VotesFor(hypothesis, ballots, camera);
+    Votes its_votes = VotesFor(hypothesis, ballots, num_sure, camera);
     if (!(votes < its_votes)) continue;
     votes = std::move(its_votes);
     best = hypothesis;
   }
-  if (guess && static_cast<int>(votes.samples.size()) < kLeastVotes) {
+  const bool is_by_guess = guess && !votes.AreEnough();
+  if (is_by_guess) {
     best = {*guess, SquaresOf(kGuessErrorRad, kGuessErrorM), 0};
-    votes = VotesFor(best, ballots, camera);
-    least_votes = kLeastVotesForGuess;
+    votes = VotesFor(best, ballots, num_sure, camera);
   }
+  const auto are_enough = [&votes, is_by_guess] {
+    return votes.AreEnough() || (is_by_guess && votes.samples.size() >= kLeastVotesForGuess);
+  };
   // What all who agree say together brings others in, and leaves out who agreed by chance.
-  for (int round = 0; round < kRounds && static_cast<int>(votes.samples.size()) >= least_votes;
-       ++round) {
+  for (int round = 0; round < kRounds && are_enough(); ++round) {
     const PoseFit fit = FitPoses(votes.samples, camera, best.T_camera_lidar, {});
     if (!fit.is_usable) break;
     best = {fit.T_camera_lidar, fit.covariance, 0};
-    votes = VotesFor(best, ballots, camera);
+    votes = VotesFor(best, ballots, num_sure, camera);
   }
   best.num_agreeing = static_cast<int>(votes.samples.size());
-  if (best.num_agreeing >= least_votes) return best;
+  if (are_enough()) return best;
   if (!guess) return {};
   return RoughExtrinsic{*guess, SquaresOf(kGuessErrorRad, kGuessErrorM), 0};
 }

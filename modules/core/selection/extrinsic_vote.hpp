@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -20,16 +21,19 @@ struct RoughExtrinsic {
 };
 
 /// Lets stops of the board vote for the extrinsic, each with whatever in the lidar's sight may be
-/// the board: `lidar` and `runners_up`, none of them sure. One candidate whose sides fix its pose
+/// the board: `lidar` and `runners_up`. One candidate whose sides fix its pose
 /// makes an extrinsic; the other stops agree with it if one of theirs lies where it says, by the
 /// covariances of both. The extrinsic with most votes wins: walls, doors and furniture agree with
 /// none, since they do not move as the camera's board does. Turns of the board that its outline
 /// does not tell apart are extrinsics of their own.
 ///
+/// @param num_sure  the first so many stops are samples: the lidar alone was sure of them.
 /// @param guess  one more extrinsic to vote on, if there is one; right within some 5 degrees, 0.2
 /// m.
-/// @return nothing if fewer than four stops agree; two are enough for a guess.
+/// @return nothing if fewer than four stops agree; three are enough if all are sure, two for a
+/// guess.
 std::optional<RoughExtrinsic> VoteForExtrinsic(const std::vector<BoardSample>& stops,
+                                               std::size_t num_sure,
                                                const CameraModel& camera,
                                                const std::optional<Eigen::Isometry3d>& guess = {});
 

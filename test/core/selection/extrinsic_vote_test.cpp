@@ -45,28 +45,34 @@ std::vector<BoardSample> UnsureStops(int num_stops) {
 // Noise of some ten stops, 10 mrad and 10 mm each: 3 of their deviations over the root of ten are
 // 10 mrad; at two metres that is 20 mm.
 TEST(VoteForExtrinsic, FindsTheBoardAmongThingsThatDoNotMove) {
-  const auto rough = VoteForExtrinsic(UnsureStops(10), test::TestCamera());
+  const auto rough = VoteForExtrinsic(UnsureStops(10), 0, test::TestCamera());
   ASSERT_TRUE(rough);
   EXPECT_EQ(rough->num_agreeing, 10);
   EXPECT_THAT(rough->T_camera_lidar, test::IsNear(test::TestExtrinsic(), 0.015, 0.03));
 }
 
 TEST(VoteForExtrinsic, FindsNothingWhereNoFourAgree) {
-  EXPECT_FALSE(VoteForExtrinsic(UnsureStops(3), test::TestCamera()));
+  EXPECT_FALSE(VoteForExtrinsic(UnsureStops(3), 0, test::TestCamera()));
   std::vector<BoardSample> stops = UnsureStops(8);
   for (BoardSample& stop : stops) stop.runners_up.clear();  // doors alone
-  EXPECT_FALSE(VoteForExtrinsic(stops, test::TestCamera()));
-  EXPECT_FALSE(VoteForExtrinsic({}, test::TestCamera()));
+  EXPECT_FALSE(VoteForExtrinsic(stops, 0, test::TestCamera()));
+  EXPECT_FALSE(VoteForExtrinsic({}, 0, test::TestCamera()));
+}
+
+TEST(VoteForExtrinsic, ThreeAreEnoughIfTheLidarAloneWasSureOfThem) {
+  const std::vector<BoardSample> stops = UnsureStops(3);
+  EXPECT_TRUE(VoteForExtrinsic(stops, 3, test::TestCamera()));
+  EXPECT_FALSE(VoteForExtrinsic(stops, 2, test::TestCamera()));
 }
 
 TEST(VoteForExtrinsic, TakesAGuessWhereFewerStopsAgree) {
   const Eigen::Isometry3d guess = PerturbLeft(
       test::TestExtrinsic(), (Vector6d() << 0.04, -0.03, 0.02, 0.05, 0.05, -0.05).finished());
-  const auto rough = VoteForExtrinsic(UnsureStops(3), test::TestCamera(), guess);
+  const auto rough = VoteForExtrinsic(UnsureStops(3), 0, test::TestCamera(), guess);
   ASSERT_TRUE(rough);
   EXPECT_EQ(rough->num_agreeing, 3);
   EXPECT_THAT(rough->T_camera_lidar, test::IsNear(test::TestExtrinsic(), 0.03, 0.06));
-  EXPECT_TRUE(VoteForExtrinsic({}, test::TestCamera(), guess)->T_camera_lidar.isApprox(guess));
+  EXPECT_TRUE(VoteForExtrinsic({}, 0, test::TestCamera(), guess)->T_camera_lidar.isApprox(guess));
 }
 
 TEST(VoteForExtrinsic, PlanesAloneMakeNoExtrinsic) {
@@ -77,12 +83,12 @@ TEST(VoteForExtrinsic, PlanesAloneMakeNoExtrinsic) {
     stop.lidar.sides.fill(SideView::kJoined);
     stop.lidar.pose.covariance = Covariance(1.0, 0.3);
   }
-  EXPECT_FALSE(VoteForExtrinsic(stops, test::TestCamera()));
+  EXPECT_FALSE(VoteForExtrinsic(stops, 0, test::TestCamera()));
 }
 
 TEST(ExpectBoard, IsWhereTheLidarSeesItWithinItsCovariance) {
   const auto stops = UnsureStops(10);
-  const auto rough = VoteForExtrinsic(stops, test::TestCamera());
+  const auto rough = VoteForExtrinsic(stops, 0, test::TestCamera());
   ASSERT_TRUE(rough);
   for (const BoardSample& stop : stops) {
     const ExpectedBoard expected = ExpectBoard(stop.camera.pose, *rough);

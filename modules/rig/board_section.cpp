@@ -40,15 +40,25 @@ void ReadTargetKey(const TargetKey& key, OptionSection* section, BoardSpec* boar
   if (const auto* count = std::get_if<int BoardSpec::*>(&key.field)) board->*(*count) *= key.times;
 }
 
+/// @return whether it is there, or must be.
+bool ReadPlate(OptionSection* section, PlateInRig plate, BoardSpec* board) {
+  const bool is_given = section->Has("width_m") || section->Has("height_m");
+  if (!is_given && plate == PlateInRig::kMayBeMissing) return false;
+  section->ReadRequired("width_m",
+                        &board->width_m,
+                        "the whole plate's edge along x, not the pattern's. Without width_m and "
+                        "height_m, calibrate measures both in a recording; all others need them");
+  section->ReadRequired("height_m", &board->height_m, "its other edge, along y");
+  return true;
+}
+
 }  // namespace
 
-void ReadBoard(OptionSection* top, BoardSpec* board) {
+bool ReadBoard(OptionSection* top, PlateInRig plate, BoardSpec* board) {
   OptionSection section =
       top->RequiredSection("board", "metres; x runs along the width, y along the height");
-  if (!top->Has("board")) return;
-  section.ReadRequired(
-      "width_m", &board->width_m, "the whole plate's edge along x, not the pattern's");
-  section.ReadRequired("height_m", &board->height_m, "its other edge, along y");
+  if (!top->Has("board")) return true;
+  const bool is_plate_given = ReadPlate(&section, plate, board);
   section.Read("pattern_offset_x_m", &board->pattern_offset_x_m, kOffsetMeaning);
   section.Read("pattern_offset_y_m", &board->pattern_offset_y_m, "the same upwards: see above");
   const char* pattern =
@@ -61,11 +71,17 @@ void ReadBoard(OptionSection* top, BoardSpec* board) {
                    KeysOf("aprilgrid"));
   const CalibrationTarget* target = FindCalibrationTarget(board->pattern);
   if (target == nullptr) {
-    return section.AddError(pattern, "must be one of " + CalibrationTargetNames());
+    section.AddError(pattern, "must be one of " + CalibrationTargetNames());
+    return is_plate_given;
   }
   for (const TargetKey& key : target->keys) ReadTargetKey(key, &section, board);
+  if (!is_plate_given) {
+    board->width_m = board->LeastPlateM().x();
+    board->height_m = board->LeastPlateM().y();
+  }
   if (section.IsComplete()) section.AddProblems(BoardProblems(*board));
   section.RefuseUnknownKeys();
+  return is_plate_given;
 }
 
 }  // namespace voqcal

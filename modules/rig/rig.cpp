@@ -65,14 +65,17 @@ CalibrationTask Rig::Task() const {
 
 namespace {
 
-Rig Load(const std::filesystem::path& path, SensorChoice choice, LensInRig* lens) {
+Rig Load(const std::filesystem::path& path,
+         SensorChoice choice,
+         LensInRig* lens,
+         PlateInRig plate = PlateInRig::kRequired) {
   const RigPlace place = PlaceOfRig(path);
   const std::string text = ReadWholeFile(place.file);
   YamlDocument document(place.file.string(), text);
   Rig rig;
   rig.path = path;
   rig.sha256 = Sha256OfBytes(text);
-  ReadRigSections(place, &document, &rig, lens, choice);
+  ReadRigSections(place, &document, &rig, lens, choice, plate);
   document.ThrowIfWrong();
   rig.remarks = document.Remarks();
   return rig;
@@ -126,6 +129,10 @@ Rig LoadRig(const std::filesystem::path& path, SensorChoice choice) {
 
 Rig LoadRig(const std::filesystem::path& path, LensInRig* lens) {
   return Told(Load(path, SensorChoice::kCamera, lens));
+}
+
+Rig LoadRig(const std::filesystem::path& path, PlateInRig plate) {
+  return Told(Load(path, SensorChoice::kPair, nullptr, plate));
 }
 
 RigSensors SensorsOfRig(const std::filesystem::path& path, PairLine pair_line) {

@@ -140,6 +140,7 @@ struct Rig {
   std::filesystem::path lcm_types;
   Channels channels;
   BoardSpec board;
+  bool is_plate_given = true;  ///< Else board.width_m and height_m are only what its pattern needs.
   CameraModel camera;
   /// Roughly where the camera is (within some 5 degrees and 0.2 m), if anyone knows: where to look
   /// for boards that the lidar alone is unsure of. The result does not lean on it.
@@ -226,5 +227,10 @@ struct LensInRig {
 
 /// The same of a rig file whose camera may be unknown, whole or in part.
 Rig LoadRig(const std::filesystem::path& path, LensInRig* lens);
+
+/// Whether a rig file must say how large the board's plate is.
+enum class PlateInRig { kRequired, kMayBeMissing };
+
+Rig LoadRig(const std::filesystem::path& path, PlateInRig plate);
 
 }  // namespace voqcal

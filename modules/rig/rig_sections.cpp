@@ -236,8 +236,12 @@ RigSensors ReadRigSensors(PairLine line, RigPlace* place, YamlDocument* document
   return entries.Names();
 }
 
-void ReadRigSections(
-    const RigPlace& place, YamlDocument* document, Rig* rig, LensInRig* lens, SensorChoice choice) {
+void ReadRigSections(const RigPlace& place,
+                     YamlDocument* document,
+                     Rig* rig,
+                     LensInRig* lens,
+                     SensorChoice choice,
+                     PlateInRig plate) {
   OptionSection top(document);
   SensorEntries entries = ReadSensorEntries(&top);
   document->ThrowIfWrong();  // before any of them is chosen
@@ -245,7 +249,7 @@ void ReadRigSections(
   top.ReadRequired("rig", &rig->rig_name, "name of the rig, as reports show it");
   rig->name = rig->rig_name;
   ReadLcm(&top, place.file, rig, &channel_prefix);
-  ReadBoard(&top, &rig->board);
+  rig->is_plate_given = ReadBoard(&top, plate, &rig->board);
   if (entries.AreGiven()) {
     ReadNamedSensors(place, choice, channel_prefix, &top, &entries, rig, lens);
   } else {

@@ -6,13 +6,15 @@
 namespace voqcal {
 
 /// Fills everything of `rig` that its file says; what is wrong becomes an error of `document`.
-/// Folders are relative to the file of `place`. With `lens`, the camera's numbers may be missing.
+/// Folders are relative to the file of `place`. With `lens`, the camera's numbers may be missing; as `plate`
+/// says, the plate's (Rig::is_plate_given).
 /// @throws std::runtime_error if `place` does not tell which sensors are meant.
 void ReadRigSections(const RigPlace& place,
                      YamlDocument* document,
                      Rig* rig,
                      LensInRig* lens = nullptr,
-                     SensorChoice choice = SensorChoice::kPair);
+                     SensorChoice choice = SensorChoice::kPair,
+                     PlateInRig plate = PlateInRig::kRequired);
 
 /// The sensors that the file names; none if it is of one lidar and one camera. Which of them are
 /// meant, the file may say where `place` does not.

@@ -11,6 +11,7 @@
 #include "calibrate/bag.hpp"
 #include "calibrate/collect.hpp"
 #include "calibrate/finish_session.hpp"
+#include "calibrate/plate_of_recording.hpp"
 #include "calibrate/summary.hpp"
 #include "common/scratch_folder.hpp"
 #include "common/tool_main.hpp"
@@ -50,7 +51,7 @@ void Print(const CalibrateArgs& args, const OfflineRun& run) {
 }
 
 void RunCalibrate(const CalibrateArgs& args) {
-  const Rig rig = LoadRig(args.rig);
+  Rig rig = LoadRig(args.rig, PlateInRig::kMayBeMissing);
   for (const std::string& doubt : BoardDoubts(rig.board)) spdlog::warn("{}", doubt);
   for (const std::string& doubt : CameraDoubts(rig.camera)) spdlog::warn("{}", doubt);
   if (std::filesystem::exists(args.out) && !std::filesystem::is_directory(args.out)) {
@@ -64,6 +65,7 @@ void RunCalibrate(const CalibrateArgs& args) {
     input.log = ImportBag(rig, args.bag, input.times, scratch.path());
     input.times = RecordingTimes::kStamps;  // the import has settled them
   }
+  if (!rig.is_plate_given) MeasurePlate(input, scratch.path(), &rig);
   const auto run = CollectSamples(rig, input, scratch.path());
   FinishSession(rig, Given(args), {scratch.path(), args.out}, run.get());
   Print(args, *run);

@@ -44,6 +44,13 @@ struct BoardSpec {
   /// How far corner i of a row or column lies from corner 0, in squares.
   double SquaresTo(int i) const { return (i + 1) / 2 + gap_squares * (i / 2); }
 
+  /// Width and height of the least plate that the pattern fits on: one that is cut closer than half
+  /// a square round its corners has no whole square left there.
+  Eigen::Vector2d LeastPlateM() const {
+    return square_m *
+           Eigen::Vector2d(SquaresTo(num_corners_x - 1) + 1, SquaresTo(num_corners_y - 1) + 1);
+  }
+
   /// The pattern's corners, x fastest, from (-x, -y) to (+x, +y).
   std::vector<Eigen::Vector3d> InnerCornersBoardM() const;
 };

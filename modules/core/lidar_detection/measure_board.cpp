@@ -218,7 +218,9 @@ OutlineModel AmongThings(OutlineModel model) {
 std::optional<NoLidarBoard> FitPlaneAndOutline(const PointCloud& cloud_lidar_m,
                                                const BoardPrior* prior,
                                                Measurement* m) {
-  constexpr int kMaxRounds = 6;  // beams that were told to be of another thing hold the outline
+  // Beams that were first told to be of something else free the outline in later rounds. Unless the
+  // board is expected there, more than two bring more of other things up to its likeness.
+  const int num_rounds = prior != nullptr ? 6 : 2;
   constexpr double kSettledM = 0.001;
   for (const double first_blur_m : {SearchBlurM(m->model) / 2, 3 * m->model.blur_m}) {
     LookAround(m);
@@ -236,13 +238,12 @@ std::optional<NoLidarBoard> FitPlaneAndOutline(const PointCloud& cloud_lidar_m,
   LookAround(m);
   if (!RefinePlane(cloud_lidar_m, m)) return Because(LidarBoardMiss::kNoPlane);
   if (prior != nullptr) m->model.expected = ExpectedIn(m->frame, *prior);
-  for (int i = 0; i < kMaxRounds; ++i) {
+  for (int i = 0; i < num_rounds; ++i) {
     LookAround(m);
     OpenLengthenedSides(m);
     const Eigen::Vector2d before_m = m->outline.pose.centre_m;
     m->outline = RefineOutline(m->telling, m->model, m->outline.pose);
-    const bool is_settled = (m->outline.pose.centre_m - before_m).norm() < kSettledM;
-    if (i > 0 && is_settled) break;
+    if (i > 0 && (m->outline.pose.centre_m - before_m).norm() < kSettledM) break;
   }
   return {};
 }

@@ -170,7 +170,8 @@ std::optional<NoLidarBoard> Doubt(const Measurement& m,
   // A strip of the board's width may be anything.
   constexpr int kMaxPartsJoined = 5;
   const bool is_strip = NumPartsOnPlane(m, open) > kMaxPartsJoined;
-  if (is_strip || agreement.covered < kMinCoveredOfThree) return OpenAt(m, open);
+  const bool may_go_on = m.sides[open].view == SideView::kCutOff;
+  if (is_strip || may_go_on || agreement.covered < kMinCoveredOfThree) return OpenAt(m, open);
   return {};
 }
 

@@ -46,8 +46,9 @@ bool ReadPlate(OptionSection* section, PlateInRig plate, BoardSpec* board) {
   if (!is_given && plate == PlateInRig::kMayBeMissing) return false;
   section->ReadRequired("width_m",
                         &board->width_m,
-                        "the whole plate's edge along x, not the pattern's. Without width_m and "
-                        "height_m, calibrate measures both in a recording; all others need them");
+                        "the whole plate's edge along x, not the pattern's. Where width_m and "
+                        "height_m are both left out, calibrate measures them in the recording; "
+                        "live programs need them");
   section->ReadRequired("height_m", &board->height_m, "its other edge, along y");
   return true;
 }

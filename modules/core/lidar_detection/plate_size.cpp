@@ -10,7 +10,7 @@
 namespace voqcal {
 namespace {
 
-constexpr double kStepM = 0.04;  // half of it is within what the detector lets a length be off
+constexpr double kStepM = 0.06;  // half of it is what the detector lets a length be off, at least
 constexpr double kMaxMarginM = 0.6;  // of a plate around its pattern, both sides together
 constexpr std::size_t kNumSearched = 12;  // sweeps; the best sizes are then looked for in all
 constexpr int kLeastPlaces = 3;
@@ -64,7 +64,8 @@ double SpreadM(const std::vector<double>& values_m, double middle_m) {
   return kMedianToSigma * Median(off_m) / std::sqrt(static_cast<double>(values_m.size()));
 }
 
-/// What is measured where a board like `board` is found.
+/// What is measured where a board like `board` is found. Lengths are as uncertain as the spill past
+/// either end, which all sweeps share.
 PlateSize Measure(const std::vector<PointCloud>& sweeps_lidar_m,
           std::size_t step,
           const BoardSpec& board,
@@ -73,9 +74,11 @@ PlateSize Measure(const std::vector<PointCloud>& sweeps_lidar_m,
   if (sightings.centres_m.empty()) return {};
   const double longer_m = Median(sightings.longer_m);
   const double shorter_m = Median(sightings.shorter_m);
+  const double spread_m =
+      std::max(SpreadM(sightings.longer_m, longer_m), SpreadM(sightings.shorter_m, shorter_m));
   return {std::max(longer_m, shorter_m),
           std::min(longer_m, shorter_m),
-          std::max(SpreadM(sightings.longer_m, longer_m), SpreadM(sightings.shorter_m, shorter_m)),
+          std::hypot(spread_m, 2 * options.beam.spill_sigma_m),
           static_cast<int>(sightings.centres_m.size())};
 }
 

@@ -15,7 +15,7 @@ namespace voqcal {
 struct PlateSize {
   double longer_m = 0.0;
   double shorter_m = 0.0;
-  double sigma_m = 0.0;  ///< Of either.
+  double sigma_m = 0.0;  ///< Of either; the spill's share is common to both.
   int num_places = 0;    ///< Where it was seen.
 };
 

@@ -214,6 +214,21 @@ TEST(LoadRig, NamesWhatIsMissing) {
             "rig.yaml:4: board.height_m is missing");
 }
 
+constexpr char kPlateless[] = "board: {square_m: 0.1, num_corners_x: 4, num_corners_y: 6}\n";
+
+TEST(LoadRig, NamesWhatMeasuresAMissingPlate) {
+  const std::string text = std::string(kHead) + kPlateless + kCamera;
+  EXPECT_THAT(LoadError(text),
+              AllOf(HasSubstr("board.width_m is missing"), HasSubstr("board.height_m is missing")));
+  const test::TemporaryFolder folder;
+  const Rig rig = LoadRig(folder.Write("rig.yaml", text), PlateInRig::kMayBeMissing);
+  EXPECT_FALSE(rig.is_plate_given);
+  EXPECT_DOUBLE_EQ(rig.board.width_m, 0.4);  // three squares between corners, half of one beside
+  EXPECT_DOUBLE_EQ(rig.board.height_m, 0.6);
+  EXPECT_TRUE(
+      LoadRig(folder.Write("rig.yaml", Minimal()), PlateInRig::kMayBeMissing).is_plate_given);
+}
+
 TEST(LoadRig, NamesWhatFindsAMissingLens) {
   std::string text = Minimal();
   text.replace(text.find("fx_px: 500, "), 12, "");

@@ -6,8 +6,8 @@
 namespace voqcal {
 
 /// Fills everything of `rig` that its file says; what is wrong becomes an error of `document`.
-/// Folders are relative to the file of `place`. With `lens`, the camera's numbers may be missing; as `plate`
-/// says, the plate's (Rig::is_plate_given).
+/// Folders are relative to the file of `place`. With `lens`, the camera's numbers may be missing;
+/// as `plate` says, the plate's (Rig::is_plate_given).
 /// @throws std::runtime_error if `place` does not tell which sensors are meant.
 void ReadRigSections(const RigPlace& place,
                      YamlDocument* document,

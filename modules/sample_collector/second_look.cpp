@@ -70,7 +70,8 @@ std::vector<KeptStop> SecondLook::FindBoards(const std::vector<BoardSample>& sam
                                              std::vector<std::string>* misses) {
   std::vector<BoardSample> votes = samples;
   for (const KeptStop& kept : kept_) votes.push_back(VoteOf(kept.stop));
-  const auto extrinsic = VoteForExtrinsic(votes, samples.size(), rig_.camera, rig_.T_camera_lidar_guess);
+  const auto extrinsic =
+      VoteForExtrinsic(votes, samples.size(), rig_.camera, rig_.T_camera_lidar_guess);
   if (!extrinsic) {
     misses->insert(misses->end(), kept_.size(), "too few stops agree on where to look");
     return {};

@@ -154,8 +154,7 @@ void Judge(const LidarBoard& found, LidarSighting* sighting) {
   sighting->num_measured_sides = NumMeasuredSides(found);
   sighting->centre_error_m = centre_error_m.norm();
   sighting->normal_error_rad = AngleBetween(pose.normal, truth.linear().col(2));
-  const KnownError known =
-      KnownErrorOf(centre_error_m, pose.covariance.bottomRightCorner<3, 3>());
+  const KnownError known = KnownErrorOf(centre_error_m, pose.covariance.bottomRightCorner<3, 3>());
   const bool is_right = known.norm_m < kWrongCentreM && angle_rad < kWrongAngleRad;
   sighting->verdict = is_right ? SightingVerdict::kRight : SightingVerdict::kWrong;
   sighting->centre_nees = known.nees;

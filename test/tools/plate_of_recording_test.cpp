@@ -37,13 +37,12 @@ TEST(MeasurePlate, SaysWhatToDoWhereItCannot) {
   rig.path = "rig.yaml";
   const std::filesystem::path log = folder.path() / "empty.lcm";
   { LogWriter writer(log); }
-  EXPECT_THAT(
-      test::ErrorOf([&] {
-        MeasurePlate({log, {}, RecordingTimes::kAuto}, folder.path(), &rig);
-      }),
-      AllOf(HasSubstr("rig.yaml: board.width_m and board.height_m are missing"),
-            HasSubstr(log.string()),
-            HasSubstr("ruler")));
+  EXPECT_THAT(test::ErrorOf([&] {
+                MeasurePlate({log, {}, RecordingTimes::kAuto}, folder.path(), &rig);
+              }),
+              AllOf(HasSubstr("rig.yaml: board.width_m and board.height_m are missing"),
+                    HasSubstr(log.string()),
+                    HasSubstr("ruler")));
   EXPECT_THAT(test::ErrorOf([&] {
                 MeasurePlate({{}, "poses.csv", RecordingTimes::kAuto}, folder.path(), &rig);
               }),

@@ -95,8 +95,9 @@ void MeasurePlate(const InputPaths& input, const std::filesystem::path& scratch,
   const std::string missing =
       rig->path.string() + ": board.width_m and board.height_m are missing, and ";
   if (!input.log || IsSamplesLog(*rig, *input.log)) {
-    throw std::runtime_error(missing + input.Given().string() +
-                             " has no sweeps to measure the plate in: write them into the rig file");
+    throw std::runtime_error(
+        missing + input.Given().string() +
+        " has no sweeps to measure the plate in: write them into the rig file");
   }
   std::optional<PlateSize> size;
   {

@@ -20,7 +20,8 @@ namespace {
 // Of [rotation_rad; translation_m], left side. The outline gives the shift in the plane and the
 // turn about the normal; the plane gives the tilts, and an offset that moves the centre along its
 // ray, because the outline was seen along rays. Covers noise, offsets of single scan lines, and
-// the unknown spill and thickness, and a bar along a side; not what all lines share, nor a board that is bent.
+// the unknown spill and thickness, and a bar along a side; not what all lines share, nor a board
+// that is bent.
 Matrix6d CovarianceOf(const Eigen::Isometry3d& T_lidar_board,
                       const Measurement& m,
                       const PointCloud& cloud_lidar_m,

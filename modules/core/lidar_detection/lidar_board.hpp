@@ -41,7 +41,7 @@ struct LidarBeamOptions {
 /// How the lidar board detector searches one cloud.
 struct LidarBoardOptions {
   double min_range_m = 0.5;   ///< Nearer returns are the robot itself.
-  double max_range_m = 12.0;  ///< Farther boards have too few points to measure.
+  double max_range_m = 20.0;  ///< Farther boards have too few points to measure.
   std::optional<RegionOfInterest> region_of_interest;  ///< Not needed; narrows the search.
   double max_corner_sigma_m = 0.04;  ///< A board whose outline is less certain is refused.
   double max_bend_m = 0.02;          ///< A board that is certainly more bent is refused.

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "core/board/half_turn.hpp"
 #include "core/lidar_detection/lidar_beams.hpp"
 
 namespace voqcal {
@@ -124,14 +125,16 @@ bool HasTurnedRival(const std::vector<OutlineBeam>& beams,
                     const OutlineModel& model,
                     const OutlineFit& best) {
   constexpr int kNumAngles = 18;  // 10 degrees apart
-  constexpr double kSinFiveDegrees = 0.0872;
+  constexpr double kFiveDegreesRad = 0.0873;
+  const double same_after_rad = IsSquare(model.width_m, model.height_m) ? M_PI / 2 : M_PI;
   constexpr double kAsGood = 5.0;  // ln 150
   for (int i = 1; i < kNumAngles; ++i) {
     const RectanglePose turned{best.pose.centre_m, best.pose.angle_rad + M_PI * i / kNumAngles};
     const OutlineFit rough = SharpenOutline(beams, model, turned, SearchBlurM(model) / 2);
     const OutlineFit rival = RefineOutline(beams, model, rough.pose);
-    const bool is_turned =
-        std::abs(std::sin(rival.pose.angle_rad - best.pose.angle_rad)) > kSinFiveDegrees;
+    const double turn_rad =
+        std::remainder(rival.pose.angle_rad - best.pose.angle_rad, same_after_rad);
+    const bool is_turned = std::abs(turn_rad) > kFiveDegreesRad;
     if (is_turned && rival.log_likelihood > best.log_likelihood - kAsGood) return true;
   }
   return false;

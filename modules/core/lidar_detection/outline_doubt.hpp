@@ -21,7 +21,8 @@ OutlineFit SettleOutline(const std::vector<OutlineBeam>& beams,
                          OutlineFit fit);
 
 /// Whether a rectangle turned by five degrees or more explains the beams nearly as well as `best`
-/// does, to a likelihood ratio of 150: a few scan lines may leave several.
+/// does, to a likelihood ratio of 150: a few scan lines may leave several. Turns that make the same
+/// rectangle, by halves or, of a square, by quarters, are none.
 bool HasTurnedRival(const std::vector<OutlineBeam>& beams,
                     const OutlineModel& model,
                     const OutlineFit& best);

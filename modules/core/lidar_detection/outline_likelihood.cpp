@@ -180,8 +180,7 @@ void AddPrior(const OutlineModel& model, const OutlineFit& at, OutlineSlope* slo
   if (!model.expected) return;
   const ExpectedRectangle& expected = *model.expected;
   const Eigen::Matrix3d J = JacobianOfOff(expected, at);
-  slope->gradient.head<3>() -=
-      J.transpose() * expected.information * OffExpected(expected, at);
+  slope->gradient.head<3>() -= J.transpose() * expected.information * OffExpected(expected, at);
   slope->fit.information.topLeftCorner<3, 3>() += J.transpose() * expected.information * J;
 }
 

@@ -11,7 +11,7 @@ namespace voqcal {
 namespace {
 
 constexpr double kStepM = 0.06;  // half of it is what the detector lets a length be off, at least
-constexpr double kMaxMarginM = 0.6;  // of a plate around its pattern, both sides together
+constexpr double kMaxMarginM = 0.6;       // of a plate around its pattern, both sides together
 constexpr std::size_t kNumSearched = 12;  // sweeps; the best sizes are then looked for in all
 constexpr int kLeastPlaces = 3;
 
@@ -67,9 +67,9 @@ double SpreadM(const std::vector<double>& values_m, double middle_m) {
 /// What is measured where a board like `board` is found. Lengths are as uncertain as the spill past
 /// either end, which all sweeps share.
 PlateSize Measure(const std::vector<PointCloud>& sweeps_lidar_m,
-          std::size_t step,
-          const BoardSpec& board,
-          const LidarBoardOptions& options) {
+                  std::size_t step,
+                  const BoardSpec& board,
+                  const LidarBoardOptions& options) {
   const Sightings sightings = See(sweeps_lidar_m, step, board, options);
   if (sightings.centres_m.empty()) return {};
   const double longer_m = Median(sightings.longer_m);
@@ -90,9 +90,9 @@ void SortByPlaces(std::vector<PlateSize>* sizes) {
 
 /// Every size on a grid, as measured; the most often found first.
 std::vector<PlateSize> SearchSizes(const std::vector<PointCloud>& sweeps_lidar_m,
-                               const BoardSpec& pattern,
-                               const LidarBoardOptions& options,
-                               const std::function<void(double)>& on_progress) {
+                                   const BoardSpec& pattern,
+                                   const LidarBoardOptions& options,
+                                   const std::function<void(double)>& on_progress) {
   const Eigen::Vector2d least_m = pattern.LeastPlateM();
   const std::size_t step = 1 + (sweeps_lidar_m.size() - 1) / kNumSearched;
   const auto num_steps = static_cast<int>(kMaxMarginM / kStepM);

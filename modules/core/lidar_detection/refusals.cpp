@@ -178,13 +178,15 @@ std::optional<NoLidarBoard> Doubt(const Measurement& m,
 std::optional<NoLidarBoard> Bend(const Measurement& m,
                                  const PointCloud& cloud_lidar_m,
                                  double max_bend_m) {
-  constexpr double kCertain = 5.0;  // standard errors, themselves of a dozen scan lines
+  constexpr double kCertain = 5.0;        // standard errors, themselves of a dozen scan lines
+  constexpr double kMostOfABoardM = 0.1;  // what is bent more is none
   const Eigen::Isometry3d T_board_lidar = TransformOf(m.frame, m.outline.pose).inverse();
   std::vector<Eigen::Vector3d> points_board_m = m.positions_m;
   for (Eigen::Vector3d& point_m : points_board_m) point_m = T_board_lidar * point_m;
   const BoardBend bend =
       MeasureBend(points_board_m, RingsOf(m, cloud_lidar_m), m.model.width_m, m.model.height_m);
   if (bend.bend_m - kCertain * bend.sigma_m <= max_bend_m) return {};
+  if (bend.bend_m > kMostOfABoardM) return NoLidarBoard{LidarBoardMiss::kNoPlane, {}};
   std::ostringstream detail;
   detail << "by " << std::lround(bend.bend_m * 1e3) << " mm";
   return NoLidarBoard{LidarBoardMiss::kBent, detail.str()};

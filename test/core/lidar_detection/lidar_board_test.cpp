@@ -88,6 +88,37 @@ TEST(DetectLidarBoard, FindsBoardInDenseSweeps) {
   }
 }
 
+struct SizeAtRange {
+  double width_m;
+  double height_m;
+  double range_m;
+};
+
+// 0.2 degrees apart, 128 scan lines in 30: 7 cm and 8 cm at 20 m.
+TEST(DetectLidarBoard, FindsBoardsOfAllSizesNearAndFar) {
+  for (const SizeAtRange& at : {SizeAtRange{0.3, 0.4, 0.8},
+                                SizeAtRange{0.3, 0.4, 3.0},
+                                SizeAtRange{0.6, 0.6, 1.5},
+                                SizeAtRange{0.6, 0.8, 10.0},
+                                SizeAtRange{1.2, 1.2, 3.0},
+                                SizeAtRange{1.2, 1.2, 19.0}}) {
+    SCOPED_TRACE(testing::Message() << at.width_m << " x " << at.height_m << " at " << at.range_m);
+    SyntheticLidarBoardOptions scene;
+    scene.board = {at.width_m, at.height_m, 0.05, 4, 5, 0.0, 0.0};
+    scene.T_lidar_board = FacingBoard({at.range_m, 0.1, 0.0}, 35.0, 15.0, 10.0);
+    scene.num_rings = 128;
+    scene.noise_m = 0.005;
+    scene.has_wall = at.range_m < 6.0;
+    const auto found = DetectLidarBoard(SynthesizeLidarBoard(scene), scene.board, {});
+    ASSERT_TRUE(found) << ToString(found.error());
+    const BoardPose& pose = found->front().pose;
+    const Eigen::Vector3d error_m = pose.centre_m - scene.T_lidar_board.translation();
+    const Eigen::Matrix3d covariance = pose.covariance.bottomRightCorner<3, 3>();
+    EXPECT_LT(error_m.norm(), 0.03);
+    EXPECT_LT(error_m.dot(covariance.ldlt().solve(error_m)), 14.2);  // one in 400
+  }
+}
+
 TEST(DetectLidarBoard, ErrorStaysWithinItsCovariance) {
   SyntheticLidarBoardOptions scene = Diamond();
   for (const double noise_m : {0.005, 0.015}) {
@@ -148,6 +179,44 @@ TEST(DetectLidarBoard, FindsBoardThatPersonAndPoleTouch) {
   scene.boxes.push_back(Box(centre_m + Eigen::Vector3d(0.25, 0.55, -0.3), {0.12, 0.2, 0.8}));
   // Part of one side has no misses: the centre is held by fewer beams.
   ExpectFound(SynthesizeLidarBoard(scene), scene, 0.010, 3 * kSpacingTolRad);
+}
+
+/// A bar in its plane along the whole upper edge, as an easel has; the post that it hangs on goes
+/// on above it or is not seen.
+SyntheticLidarBoardOptions BoardUnderABar(double bar_m, bool has_post) {
+  SyntheticLidarBoardOptions scene;
+  scene.noise_m = 0.005;
+  scene.num_rings = 64;
+  scene.T_lidar_board = FacingBoard({2.3, 0.0, 0.0}, 0.0);
+  const double top_m = scene.board.height_m / 2;
+  scene.boxes.push_back(Box({2.304, 0.0, top_m + bar_m / 2}, {0.004, 0.305, bar_m / 2}));
+  if (has_post) scene.boxes.push_back(Box({2.304, 0.0, top_m + bar_m + 0.3}, {0.004, 0.04, 0.3}));
+  return scene;
+}
+
+TEST(DetectLidarBoard, ABarAlongASideDoesNotMoveIt) {
+  const SyntheticLidarBoardOptions scene = BoardUnderABar(0.05, /*has_post=*/true);
+  const auto found = DetectLidarBoard(SynthesizeLidarBoard(scene), scene.board, {});
+  ASSERT_TRUE(found) << ToString(found.error());
+  EXPECT_EQ(found->front().sides[2], SideView::kJoined);
+  EXPECT_EQ(NumMeasuredSides(found->front()), 3);
+  EXPECT_LT((found->front().pose.centre_m - scene.T_lidar_board.translation()).norm(), 0.01);
+}
+
+// Unless the board is expected there, such a board is of another size.
+TEST(DetectLidarBoard, ABarThatNothingTellsIsInTheCovariance) {
+  const SyntheticLidarBoardOptions scene = BoardUnderABar(0.05, /*has_post=*/false);
+  EXPECT_EQ(MissOf(scene), "size mismatch");
+  BoardPrior prior;
+  prior.T_lidar_board = scene.T_lidar_board;
+  prior.covariance = 4e-4 * Matrix6d::Identity();
+  const auto found = DetectLidarBoard(SynthesizeLidarBoard(scene), scene.board, {}, nullptr, prior);
+  ASSERT_TRUE(found) << ToString(found.error());
+  const BoardPose& pose = found->front().pose;
+  const double sigma_m = std::sqrt(pose.covariance(5, 5));
+  EXPECT_GT(pose.centre_m.z(), 0.01);  // half the bar too high
+  EXPECT_GT(sigma_m, 0.01);
+  EXPECT_LT(pose.centre_m.z(), 2 * sigma_m);
 }
 
 TEST(DetectLidarBoard, NeedsNoRingsIntensityOrOrder) {

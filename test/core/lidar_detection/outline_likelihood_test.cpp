@@ -56,9 +56,33 @@ TEST(OutlineLogLikelihood, IsThatOfEvaluateOutline) {
                    EvaluateOutline(Beams(), SlantedModel(), At()).log_likelihood);
 }
 
-TEST(DifferentiateOutline, HasTheGradientOfTheLikelihood) {
+OutlineModel ExpectingModel() {
+  OutlineModel model = SlantedModel();
+  model.expected = ExpectedRectangle{{{0.05, 0.02}, 0.3}, Eigen::Matrix3d::Zero()};
+  model.expected->information << 9e4, 2e4, 1e3, 2e4, 7e4, 0, 1e3, 0, 5e4;
+  return model;
+}
+
+TEST(WithoutExpected, IsWhatTheBeamsTell) {
   const std::vector<OutlineBeam> beams = Beams();
-  const OutlineModel model = SlantedModel();
+  const OutlineFit with = EvaluateOutline(beams, ExpectingModel(), At());
+  const OutlineFit without = WithoutExpected(ExpectingModel(), with);
+  const OutlineFit told = EvaluateOutline(beams, SlantedModel(), At());
+  EXPECT_TRUE(without.PoseCovariance().isApprox(told.PoseCovariance(), 1e-6));
+  EXPECT_GT(told.PoseCovariance()(0, 0), with.PoseCovariance()(0, 0));
+}
+
+TEST(WithoutExpected, IsWideWhereNoBeamTells) {
+  const OutlineFit none =
+      WithoutExpected(ExpectingModel(), EvaluateOutline({}, ExpectingModel(), At()));
+  EXPECT_TRUE(none.PoseCovariance().isApprox(Eigen::Matrix3d::Identity(), 1e-6));
+}
+
+class DifferentiateOutlineOf : public testing::TestWithParam<OutlineModel> {};
+
+TEST_P(DifferentiateOutlineOf, HasTheGradientOfTheLikelihood) {
+  const std::vector<OutlineBeam> beams = Beams();
+  const OutlineModel& model = GetParam();
   const OutlineSlope slope = DifferentiateOutline(beams, model, At());
   // Over such a step a beam's probability is a parabola to 1e-6; where it counts as flat
   // (kFlat) its logarithm jumps by 5e-5, which a step of some beams' passing makes 1 in all.
@@ -70,6 +94,10 @@ TEST(DifferentiateOutline, HasTheGradientOfTheLikelihood) {
     EXPECT_NEAR(slope.gradient[i], numeric, 0.01 * slope.gradient.norm()) << i;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutExpectation,
+                         DifferentiateOutlineOf,
+                         testing::Values(SlantedModel(), ExpectingModel()));
 
 }  // namespace
 }  // namespace voqcal

@@ -66,7 +66,8 @@ TEST(LidarBoardVerdict, BoardOfWhichMostIsHiddenMayBeSomethingElse) {
   EXPECT_NE("found", VerdictOn(SynthesizeLidarBoard(scene)));
 }
 
-TEST(LidarBoardVerdict, SideBeyondTheFieldOfViewIsOpen) {
+// It may go on there: a crate of the board's width does.
+TEST(LidarBoardVerdict, SideBeyondTheFieldOfViewIsOpenAndLeavesItUnsure) {
   const PointCloud whole = SynthesizeLidarBoard(UprightBoard());
   PointCloud cut = whole;
   cut.points.clear();
@@ -74,7 +75,12 @@ TEST(LidarBoardVerdict, SideBeyondTheFieldOfViewIsOpen) {
     // A sensor that sees no farther to the left than 0.2 m from the board's middle.
     if (point.position_m.y() < 0.2F / 2.3F * point.position_m.x()) cut.points.push_back(point);
   }
-  EXPECT_EQ("measured measured measured cut off", SidesOf(cut));
+  const auto found = DetectLidarBoard(cut, kBoard, {});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(ToString(found.error()), "leaves the field of view on the left");
+  ASSERT_EQ(found.error().unsure.size(), 1u);
+  EXPECT_EQ(NumMeasuredSides(found.error().unsure[0]), 3);
+  EXPECT_EQ(found.error().unsure[0].sides[3], SideView::kCutOff);
 }
 
 TEST(LidarBoardVerdict, BoardThatStandsOnTheGroundIsJoinedToIt) {

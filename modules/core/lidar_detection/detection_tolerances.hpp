@@ -37,6 +37,8 @@ constexpr LengthTolerance kLengthOfMean{0.03, 1.5, 0.08};
 /// boards of the field that few level scan lines meet are off by up to 40 mm in the mean.
 constexpr LengthTolerance kPairOfOne{0.06, 4.0, 0.15};
 constexpr LengthTolerance kPairOfMean{0.03, 1.5, 0.05};
+/// The same where the lidar alone may be sure.
+constexpr LengthTolerance kSurePairOfMean{0.02, 1.0, 0.05};
 /// Where the board is expected, only another thing is refused: stated sizes of plates in the field
 /// are off by up to 50 mm.
 constexpr LengthTolerance kExpectedOfOne{0.15, 0.0, 0.15};

@@ -272,7 +272,10 @@ Expected<MeasuredBoard, NoLidarBoard> Decide(const Measurement& m,
   if (!is_right_size) return Because(LidarBoardMiss::kSizeMismatch);
   if (auto bent = Bend(m, cloud_lidar_m, options.max_bend_m)) return *bent;
   std::optional<NoLidarBoard> doubt = Doubt(m, agreement, is_told);
-  if (!doubt && IsLoose(m, options.max_corner_sigma_m)) doubt = Because(LidarBoardMiss::kLoose);
+  const bool is_whole = std::count(is_told.begin(), is_told.end(), true) == 4;
+  const bool is_sure_size =
+      is_whole || AreLengthsRight(lengths_m, edges, true_m, is_told, kPairOfOne, kSurePairOfMean);
+  if (!doubt && (!is_sure_size || IsLoose(m, options.max_corner_sigma_m))) doubt = Because(LidarBoardMiss::kLoose);
   return MeasuredBoard{DescribeBoard(m, lengths_m, cloud_lidar_m, board, options.beam.line_sigma_m),
                        std::move(doubt)};
 }

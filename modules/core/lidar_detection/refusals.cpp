@@ -115,12 +115,15 @@ std::array<bool, 4> ToldSides(const Measurement& m,
   const bool is_cropped = IsCropped(edges);
   const std::array<bool, 4> is_covered = CoveredPast(m, beams);
   const double max_short_m = std::max(kMaxShortM, kMaxShortSpacings * SpacingM(m));
+  constexpr double kMaxToldSigmaM = 0.1;  // beyond, no beam is left past it, only what joins it
   std::array<bool, 4> is_told{};
   for (std::size_t i = 0; i < 4; ++i) {
     const SideEvidence& side = m.sides[i];
+    const bool is_joined = side.Count(SideEvidence::Past::kPlane) > 0;
+    const bool is_measured = side.view == SideView::kMeasured &&
+                             !(is_joined && edges[i].offset_sigma_m > kMaxToldSigmaM);
     const bool is_last_seen = side.view == SideView::kCutOff && -side.reach_m < max_short_m;
-    is_told[i] =
-        side.view == SideView::kMeasured || (is_last_seen && (is_cropped || is_covered[i]));
+    is_told[i] = is_measured || (is_last_seen && (is_cropped || is_covered[i]));
   }
   return is_told;
 }

@@ -128,7 +128,6 @@ TEST_F(SimulatedReport, IsTheSameWhateverPythonsTheUserHas) {
   EXPECT_EQ(ReadWholeFile(Path("again/report.html")), ReadWholeFile(Path("out/report.html")));
 }
 
-// It is not frames without a board that were in the way.
 TEST_F(SimulatedReport, OfSamplesThatContradictOneAnotherPointsAtThem) {
   const std::string rig = folder_.Write(
       "squares.yaml", test::Replaced(ReadWholeFile(rig_), "square_m: 0.095", "square_m: 0.0095"));
@@ -141,7 +140,7 @@ TEST_F(SimulatedReport, OfSamplesThatContradictOneAnotherPointsAtThem) {
                                            Path("squares")});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(ReadWholeFile(Path("squares/no_result.html")),
-              AllOf(HasSubstr("frames without a board were not in the way"),
+              AllOf(HasSubstr("counts are kept where fewer than three are"),
                     HasSubstr("give board.square_m: 0.095"),
                     Not(HasSubstr("Not available"))));
 }

@@ -103,9 +103,9 @@ void AddFit(const Evidence& evidence, std::vector<VerdictCheck>* checks) {
       checks);
 }
 
-/// What may come of a cause that was found is not put down to whoever held the board.
+/// What may come of a wrong input that was found is not put down to whoever held the board.
 std::string RemedyAfterCause(const Evidence& evidence, const std::string& otherwise) {
-  if (!evidence.likeliest_fault.empty()) {
+  if (evidence.must_be_mended && !evidence.likeliest_fault.empty()) {
     return "First mend what may be why: " + evidence.likeliest_cause + ".";
   }
   if (!evidence.other_lens.empty()) {

@@ -28,10 +28,10 @@ std::string Disagreement(const ChosenSamples& chosen) {
     return "fewer than three samples that agree with each other: " + counts;
   }
   const bool most_contradict = 2 * used.size() < chosen.samples.size();
-  if (most_contradict && !VarietyProblem(used).empty()) {
-    return "most samples contradict one another; those that agree, " + counts + ", are too alike";
-  }
-  return {};
+  const std::string variety_problem = VarietyProblem(used);
+  if (!most_contradict || variety_problem.empty()) return {};
+  return "most samples contradict one another; those that agree, " + counts +
+         ", are too alike: " + variety_problem;
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ std::size_t NumAgreeing(const std::vector<BoardSample>& samples,
 }
 
 /// How many times farther apart the boards' centres are by the lidar than by the camera: the median
-/// over every two samples. What one sensor has wrong at some places leaves it as it is; squares of
-/// another size are it.
+/// over all pairs that are far apart. Squares of another size scale all distances alike; what one
+/// sensor has wrong at some places leaves the median as it is.
 double CentresScale(const std::vector<BoardSample>& samples) {
   constexpr double kFarM = 0.5;  // nearer ones' ratio is that of errors
   std::vector<double> ratios;

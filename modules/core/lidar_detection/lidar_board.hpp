@@ -76,8 +76,8 @@ struct BoardPrior {
 /// Without a prior a board counts as found only if its measured sides tell it from other things;
 /// what may be the board, but may be something else, is in the error's `unsure`, best first. With a
 /// prior the board is searched there alone (within three sigma), which side is which is known, and
-/// its outline may be as incomplete as the sweep leaves it. The prior chooses; it adds nothing to
-/// the pose's covariance.
+/// its outline may be as incomplete as the sweep leaves it. The prior chooses, and holds the board
+/// along what no side tells; it adds nothing to the pose's covariance.
 ///
 /// @param background  of earlier sweeps; null if there are none. What came since they were learned
 ///     ranks higher, by up to twice its likelihood; poses do not depend on it.

@@ -275,7 +275,8 @@ Expected<MeasuredBoard, NoLidarBoard> Decide(const Measurement& m,
   const bool is_whole = std::count(is_told.begin(), is_told.end(), true) == 4;
   const bool is_sure_size =
       is_whole || AreLengthsRight(lengths_m, edges, true_m, is_told, kPairOfOne, kSurePairOfMean);
-  if (!doubt && (!is_sure_size || IsLoose(m, options.max_corner_sigma_m))) doubt = Because(LidarBoardMiss::kLoose);
+  if (!doubt && (!is_sure_size || IsLoose(m, options.max_corner_sigma_m)))
+    doubt = Because(LidarBoardMiss::kLoose);
   return MeasuredBoard{DescribeBoard(m, lengths_m, cloud_lidar_m, board, options.beam.line_sigma_m),
                        std::move(doubt)};
 }

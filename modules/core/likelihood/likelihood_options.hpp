@@ -28,7 +28,8 @@ struct LikelihoodOptions {
   double lens_error = 0.01;
   double board_size_error = 0.0005;       ///< 1 sigma of a chessboard square, relative.
   double pattern_offset_error_m = 0.001;  ///< 1 sigma in each direction of the plate.
-  /// 1 sigma of a chessboard's corner there: more than its noise, as neighbours err alike.
+  /// 1 sigma of a chessboard's corner where corners tell of the lens (CovarianceByRigErrors,
+  /// RefineWithLens): more than its noise, as neighbours err alike.
   double corner_error_px = 0.3;
   int max_iterations = 50;
 

@@ -79,6 +79,7 @@ TEST(VerdictOf, BlamesNobodyForWhatACauseMayHaveDone) {
     left_out(e);
     e->likeliest_fault = "the squares are 2 % larger";
     e->likeliest_cause = "board's squares";
+    e->must_be_mended = true;
   });
   const Verdict by_lens = JudgeWith([&](Evidence* e) {
     left_out(e);
@@ -88,6 +89,13 @@ TEST(VerdictOf, BlamesNobodyForWhatACauseMayHaveDone) {
     EXPECT_THAT(TextOf(by_cause, check), HasSubstr("First mend what may be why: board's squares."));
     EXPECT_THAT(TextOf(by_lens, check), HasSubstr("First calibrate the lens"));
   }
+  // A board that moved is no input to mend.
+  const Verdict by_motion = JudgeWith([&](Evidence* e) {
+    left_out(e);
+    e->likeliest_fault = "sample 7 moved";
+    e->likeliest_cause = "moving sample";
+  });
+  EXPECT_THAT(TextOf(by_motion, "Samples left out"), HasSubstr("Hold the board still"));
 }
 
 TEST(VerdictOf, IsBadByACauseThatMustBeMendedWhichComesFirst) {

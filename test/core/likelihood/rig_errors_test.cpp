@@ -53,7 +53,7 @@ Refined Refine(const std::vector<BoardSample>& samples,
 
 TEST(CovarianceByRigErrors, HoldsThePrincipalPointThatSamplesDoNotTell) {
   LensErrors errors = LensErrors::Zero();
-  errors[kPrincipalPointX] = 4.0 / LensReachPx(test::TestCamera());
+  errors[kPrincipalPointX] = 2 * LikelihoodOptions().lens_error;  // 2 sigma
   const Refined refined = Refine(SamplesThrough(errors), test::TestBoard());
   ASSERT_TRUE(refined.likelihood.IsUsable());
   EXPECT_GT(refined.WorstGivenRig(), 3.0);
